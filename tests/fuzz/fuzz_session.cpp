@@ -1,27 +1,36 @@
-// A server after hello: a session whose viewer says whatever it likes, its stream on a virtual clock. Input: bodies of
-// messages, each with its length, two bytes, in front; none is there where that is 0. After each of them time passes,
-// and the stream gets its turn.
+// A server without sockets and threads: viewers say whatever they like, from their hello on, and come back with
+// tickets, while their streams run on a virtual clock. The form of the input is in session_input.h. After each message
+// time passes, and the streams get their turns.
 #include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <vector>
 
+#include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
 #include "server/scene/motion/animation.h"
-#include "server/session/clock/clock_requests.h"
+#include "server/session/admission.h"
 #include "server/session/clock/scene_clock.h"
-#include "server/session/limits/session_memory.h"
-#include "server/session/loop/contained.h"
+#include "server/session/welcome.h"
 #include "server/stream/framelet_stream.h"
+#include "tests/fuzz/session_input.h"
 #include "tests/session/fake_stream.h"
 #include "tests/session/triangle_scenes.h"
 
 namespace {
 
 using namespace framelet;
+using std::chrono::steady_clock;
 
-/// Most pixels of a picture: larger ones are refused, so that one input takes little time.
-constexpr int most_pixels = 160 * 120;
+/// Pictures of more pixels are refused, so that one input takes little time.
+constexpr Viewport largest{160, 120};
+constexpr std::size_t places = 2;
 constexpr std::size_t most_turns = 64;
 constexpr double turn_seconds = 0.01;
 
@@ -29,101 +38,270 @@ struct Served {
     Scene scene = moving_scene();
     RenderScene render_scene{scene, std::nullopt};
     PosedScene posed{scene, default_clips(scene), render_scene};
+    Welcome welcome = make_welcome(scene, default_clips(scene));
 };
 
-/// A viewer, with what the server and its loop do for it.
-class Viewer {
+/// A connection over which all goes that can be sent; what cannot is our own mistake.
+class EncodingStream final : public FakeStream {
 public:
-    explicit Viewer(Served& served) : served_(served) {
-        Session::Events events;
-        events.admit = [](Hello const&) { return Welcome{}; };
-        events.clock_request = [this](ClockRequest const& request) {
-            clock_.apply(request, time());
-            session_->note_clock_change();
-        };
-        events.resize = [this](Viewport viewport, bool predicts) -> std::optional<std::string> {
-            if (viewport.width * viewport.height > most_pixels) {
-                return "too large";
-            }
-            return memory_.reserve(1, viewport, predicts);
-        };
-        events.changed = [] {};
-        events.ended = [this](std::string const& reason) {
-            FRAMELET_CHECK(!reason.empty() && reason.find('\n') == std::string::npos);
-            ++ends_;
-        };
-        session_ = std::make_shared<Session>(1, connection_, std::move(events));
-        session_->start();
-        connection_->bring(Hello{protocol_version, {}, coding::all});
+    std::size_t send(Message const& message) override { return encode_message(message).size(); }
+};
+
+/// What the server does with its connections, and its loop with the sessions. What fails there is our own mistake: no
+/// viewer may lead to an exception.
+class SocketlessServer {
+public:
+    SocketlessServer(Served& served, Admission::Rules const& rules)
+        : served_(served), rules_(rules), admission_(rules, [] {}) {}
+
+    ~SocketlessServer() {
+        for (auto const& [id, connection] : connections_) {
+            connection.stream->forget_handlers();
+        }
     }
 
-    ~Viewer() { connection_->forget_handlers(); }
+    /// Opens a connection, over which the following is said.
+    void connect() {
+        speaker_ = next_id_++;
+        auto const stream = std::make_shared<EncodingStream>();
+        auto const session = std::make_shared<Session>(speaker_, stream, events_of(speaker_));
+        connections_[speaker_] = {stream, session};
+        session->start();
+    }
 
-    bool is_open() const { return session_->is_open(); }
-    int ends() const { return ends_; }
-    void say(Message const& message) { connection_->bring(message); }
+    void cut() { lose("the connection was cut", true); }
 
-    /// Gives the viewer a turn. What fails in it is our own mistake: no viewer may lead to an exception.
-    void take_turn() {
-        now_ += turn_seconds;
-        session_->take_events(events_);
-        for (StreamEvent& event : events_) {
-            event.seconds = now_;
-            stream_.take(event);
-        }
-        ClockState const clock = clock_.state(time());
-        double const speed = clock.playing ? double{clock.speed} : 0;
-        if (stream_.plan({now_, clock.time, speed, 2e5, 1e-4}, served_.posed) != Step::render) {
+    void say(ByteView body) {
+        auto const speaker = connections_.find(speaker_);
+        if (speaker == connections_.end()) {
             return;
         }
-        served_.posed.pose(stream_.moment());
-        stream_.render(served_.posed);
-        if (stream_.learn(served_.posed)) {
-            EncodedBatch batch = stream_.encode();
-            encode_message(batch); // it can be sent
-            session_->send_batch(std::move(batch));
+        std::optional<Message> message;
+        try {
+            message = decode_message(body);
+        } catch (ProtocolError const& error) {
+            lose(error.what(), false);
+            return;
         }
-        session_->status();
+        if (auto* const hello = std::get_if<Hello>(&*message)) {
+            set_ticket(*hello);
+        }
+        speaker->second.stream->bring(*message);
+        remove_ended();
+    }
+
+    void take_turns() {
+        now_ += turn_seconds;
+        std::erase_if(viewers_, [](auto const& entry) { return !entry.second.session->is_served(); });
+        for (auto const& session : open_sessions()) {
+            if (session->is_ready()) {
+                take_turn(*session, stream_of(session));
+            }
+        }
+        remove_ended();
+    }
+
+    /// Ends all sessions. Nothing may be left of what they had: there is memory for as many others.
+    void end_all() {
+        for (auto const& session : open_sessions()) {
+            session->close("the server shuts down");
+            remove(session->id());
+        }
+        admission_.keep_parked(0);
+        for (std::size_t i = 0; i < places; ++i) {
+            FRAMELET_CHECK(!admission_.reserve(next_id_++, largest, true));
+        }
     }
 
 private:
+    struct Connection {
+        std::shared_ptr<EncodingStream> stream;
+        std::shared_ptr<Session> session;
+    };
+    struct Viewer {
+        std::shared_ptr<Session> session;
+        std::unique_ptr<FrameletStream> stream;
+    };
+
+    Session::Events events_of(std::uint64_t id) {
+        Session::Events events;
+        events.admit = [this, id](Hello const& hello) { return admit(id, hello); };
+        events.clock_request = [this, id](ClockRequest const& request) {
+            if (admission_.controls(id)) {
+                clock_.apply(request, time());
+                for (auto const& session : open_sessions()) {
+                    session->note_clock_change();
+                }
+            }
+        };
+        events.resize = [this, id](Viewport viewport, bool predicts) -> std::optional<std::string> {
+            bool const fits = viewport.width * viewport.height <= largest.width * largest.height;
+            return fits ? admission_.reserve(id, viewport, predicts) : "too large";
+        };
+        events.changed = [] {};
+        events.ended = [this, id](std::string const& reason) {
+            FRAMELET_CHECK(!reason.empty() && reason.find('\n') == std::string::npos);
+            FRAMELET_CHECK(ended_.insert(id).second); // each is told once
+        };
+        return events;
+    }
+
+    std::variant<Welcome, Failure> admit(std::uint64_t id, Hello const& hello) {
+        if (auto const refusal = admission_.refusal(hello, "somebody", steady_clock::now())) {
+            return *refusal;
+        }
+        bool const may_control = !rules_.control_token.empty() && hello.token == rules_.control_token;
+        FRAMELET_CHECK(rules_.token.empty() || hello.token == rules_.token || may_control);
+        if (auto const before = admission_.session_left_behind(hello)) {
+            before->cut();
+            remove(before->id());
+        }
+        if (open_sessions().size() >= places) {
+            return Failure{"the server has its viewers already", true};
+        }
+        Welcome answer = served_.welcome;
+        answer.clock = clock_.state(time());
+        admission_.seat(connections_.at(id).session, hello, answer);
+        FRAMELET_CHECK(answer.ticket && answer.resumed == (answer.ticket == hello.ticket));
+        tickets_.push_back(answer.ticket);
+        return answer;
+    }
+
+    /// Replaces a ticket that is a small number by that of the welcome of this number. Nobody could guess it.
+    void set_ticket(Hello& hello) const {
+        std::uint64_t const number = hello.ticket.low;
+        if (hello.ticket.high == 0 && number >= 1 && number <= tickets_.size()) {
+            hello.ticket = tickets_[number - 1];
+        }
+    }
+
+    void lose(std::string const& reason, bool is_cut) {
+        if (auto const speaker = connections_.find(speaker_); speaker != connections_.end()) {
+            speaker->second.stream->lose(reason, is_cut);
+            remove_ended();
+        }
+    }
+
+    /// Removes those that have ended, which is not done while a session is on the stack. Each of them has told so.
+    void remove_ended() {
+        for (std::uint64_t const id : ended_) {
+            remove(id);
+        }
+        FRAMELET_CHECK(
+            std::ranges::none_of(connections_, [](auto const& entry) { return entry.second.session->has_ended(); }));
+    }
+
+    void remove(std::uint64_t id) {
+        auto const node = connections_.extract(id);
+        if (!node.empty()) {
+            admission_.leave(id, node.mapped().session.get());
+            node.mapped().stream->forget_handlers();
+            admission_.keep_parked(places);
+        }
+    }
+
+    std::vector<std::shared_ptr<Session>> open_sessions() const {
+        std::vector<std::shared_ptr<Session>> open;
+        for (auto const& [id, connection] : connections_) {
+            if (connection.session->is_open()) {
+                open.push_back(connection.session);
+            }
+        }
+        return open;
+    }
+
+    FrameletStream& stream_of(std::shared_ptr<Session> const& session) {
+        Viewer& viewer = viewers_[session->id()];
+        if (!viewer.stream) {
+            viewer.session = session;
+            viewer.stream = session->earlier() ? take_up(*session)
+                                               : std::make_unique<FrameletStream>(StreamOptions{}, session->codings());
+        }
+        return *viewer.stream;
+    }
+
+    /// Takes the stream of the session with which this one goes on, and which may have done so itself without a turn.
+    std::unique_ptr<FrameletStream> take_up(Session& session) {
+        std::shared_ptr<Session> const earlier = session.earlier();
+        FRAMELET_CHECK(earlier->is_parked());
+        stream_of(earlier);
+        auto node = viewers_.extract(earlier->id());
+        session.take_over();
+        return std::move(node.mapped().stream);
+    }
+
+    void take_turn(Session& session, FrameletStream& stream) {
+        session.take_events(events_);
+        for (StreamEvent& event : events_) {
+            event.seconds = now_;
+            stream.take(event);
+        }
+        ClockState const clock = clock_.state(time());
+        double const speed = clock.playing ? double{clock.speed} : 0;
+        if (stream.plan({now_, clock.time, speed, 2e5, 1e-4}, served_.posed) != Step::render) {
+            return;
+        }
+        served_.posed.pose(stream.moment());
+        stream.render(served_.posed);
+        if (stream.learn(served_.posed)) {
+            session.send_batch(stream.encode());
+        }
+        session.send(session.status());
+    }
+
     WallTime time() const {
         return WallTime(std::chrono::duration_cast<WallTime::duration>(std::chrono::duration<double>(now_)));
     }
 
     Served& served_;
-    double now_ = 0;
-    int ends_ = 0;
-    std::shared_ptr<FakeStream> const connection_ = std::make_shared<FakeStream>();
-    std::shared_ptr<Session> session_;
-    SessionMemory memory_{64'000'000};
+    Admission::Rules const rules_;
+    Admission admission_;
     SceneClock clock_{true, WallTime{}};
-    FrameletStream stream_{StreamOptions{}, coding::all};
-    std::vector<StreamEvent> events_;
+    double now_ = 0;
+    std::uint64_t next_id_ = 1, speaker_ = 0;
+    std::map<std::uint64_t, Connection> connections_;
+    std::set<std::uint64_t> ended_; ///< all that have told so
+    std::vector<Ticket> tickets_; ///< of all welcomes
+    std::map<std::uint64_t, Viewer> viewers_; ///< by session, parked ones too
+    std::vector<StreamEvent> events_; ///< scratch
 };
+
+/// `bits`: the input's first byte.
+Admission::Rules rules_of(unsigned bits) {
+    auto const if_set = [bits](unsigned bit, char const* text) { return (bits & bit) != 0 ? text : ""; };
+    return {if_set(session_input::asks_for_token, session_input::token),
+            if_set(session_input::has_control_token, session_input::control_token),
+            (bits & session_input::shares_control) != 0, places * session_bytes(largest, true)};
+}
 
 } // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     static tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, 1);
     static Served served;
-    Viewer viewer(served);
-    for (std::size_t turn = 0; size >= 2 && turn < most_turns && viewer.is_open(); ++turn) {
-        std::size_t const length = std::min(data[0] | std::size_t{data[1]} << 8, size - 2);
-        ByteView const body{reinterpret_cast<std::byte const*>(data + 2), length};
-        data += 2 + length;
-        size -= 2 + length;
-        try {
-            if (!body.empty()) {
-                viewer.say(decode_message(body));
-            }
-        } catch (ProtocolError const&) {
-            break; // which ends the connection
-        }
-        if (viewer.is_open()) {
-            viewer.take_turn();
-        }
+    spdlog::set_level(spdlog::level::off);
+    if (size < 1) {
+        return 0;
     }
-    FRAMELET_CHECK(viewer.ends() == (viewer.is_open() ? 0 : 1));
+    SocketlessServer server(served, rules_of(data[0]));
+    server.connect();
+    ByteView rest = std::as_bytes(std::span(data, size)).subspan(1);
+    for (std::size_t turn = 0; rest.size() >= 2 && turn < most_turns; ++turn) {
+        unsigned const head = std::to_integer<unsigned>(rest[0]) | std::to_integer<unsigned>(rest[1]) << 8;
+        ByteView const body =
+            rest.subspan(2, std::min<std::size_t>(head & session_input::length_bits, rest.size() - 2));
+        rest = rest.subspan(2 + body.size());
+        if ((head & session_input::is_cut) != 0) {
+            server.cut();
+        }
+        if ((head & session_input::connects) != 0) {
+            server.connect();
+        }
+        if (!body.empty()) {
+            server.say(body);
+        }
+        server.take_turns();
+    }
+    server.end_all();
     return 0;
 }

@@ -8,6 +8,7 @@
 #include "protocol/codec/color/plane_codec.h"
 #include "protocol/codec/geometry/shape_coding.h"
 #include "protocol/messages/message_codec.h"
+#include "tests/fuzz/session_input.h"
 
 namespace {
 
@@ -172,38 +173,96 @@ void write_files(std::filesystem::path const& folder) {
                                              "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
 }
 
-/// Writes what a viewer says after its hello, which answers what comes as long as it is in order; between the messages
-/// are turns without a word.
-void write_session(std::filesystem::path const& folder, std::string const& name, std::vector<Message> const& messages) {
-    std::vector<std::uint8_t> bytes;
-    for (Message const& message : messages) {
+/// What a viewer says, and what happens before it: bits of session_input.h.
+struct Said {
+    Said(auto said) : message(std::move(said)) {}
+    Said(unsigned before, Message said) : bits(before), message(std::move(said)) {}
+
+    unsigned bits = 0;
+    Message message;
+};
+
+/// Writes what viewers say, which answers what comes as long as it is in order; between the messages are turns without
+/// a word. `server`: what it asks for.
+void write_session(std::filesystem::path const& folder, std::string const& name, unsigned server,
+                   std::vector<Said> const& said) {
+    std::vector<std::uint8_t> bytes{static_cast<std::uint8_t>(server)};
+    for (auto const& [bits, message] : said) {
         std::vector<std::uint8_t> body;
         append(body, encode_message(message));
-        bytes.push_back(static_cast<std::uint8_t>(body.size()));
-        bytes.push_back(static_cast<std::uint8_t>(body.size() >> 8));
+        std::size_t const head = body.size() | bits;
+        bytes.push_back(static_cast<std::uint8_t>(head));
+        bytes.push_back(static_cast<std::uint8_t>(head >> 8));
         bytes.insert(bytes.end(), body.begin(), body.end());
         bytes.insert(bytes.end(), {0, 0, 0, 0});
     }
     write(folder / "session" / name, bytes);
 }
 
+CameraUpdate camera_update(std::uint64_t number, Viewport viewport = {64, 48}) {
+    Camera seen;
+    seen.position.x = 0.1f * static_cast<float>(number);
+    return CameraUpdate{{number, seen, viewport}, -1};
+}
+
 void write_sessions(std::filesystem::path const& folder) {
-    auto const camera = [](std::uint64_t number, Viewport viewport) {
-        Camera seen;
-        seen.position.x = 0.1f * static_cast<float>(number);
-        return CameraUpdate{{number, seen, viewport}, -1};
-    };
     ClockRequest clock;
     clock.set = ClockRequest::time | ClockRequest::playing | ClockRequest::speed;
     clock.state = {0.5, true, -2};
-    write_session(folder, "looks", {camera(1, {64, 48}), Ack{1, 1000, 100}, camera(2, {64, 48}), Ack{2, 20'000, 100}});
-    write_session(folder, "resizes",
-                  {camera(1, {64, 48}), camera(2, {33, 17}), Ack{1, 1000, 100}, camera(3, {120, 90})});
-    write_session(folder, "lets_go",
-                  {camera(1, {64, 48}), Ack{1, 1000, 100}, Evicted{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
-    write_session(folder, "wants",
-                  {ViewerSettings{1, 0.5f, true}, camera(1, {64, 48}), ViewerSettings{-1, 0, false}, clock,
-                   Ack{1, 0, 0}, Ack{2, 0, 0}, camera(2, {64, 48}), Failure{"enough"}});
+    Hello const hello{protocol_version, {}, coding::all};
+    write_session(folder, "looks", 0,
+                  {hello, camera_update(1), Ack{1, 1000, 100}, camera_update(2), Ack{2, 20'000, 100}});
+    write_session(
+        folder, "resizes", 0,
+        {hello, camera_update(1), camera_update(2, {33, 17}), Ack{1, 1000, 100}, camera_update(3, {120, 90})});
+    write_session(folder, "lets_go", 0,
+                  {hello, camera_update(1), Ack{1, 1000, 100}, Evicted{{{1, Tile{1}}, {1, Tile{5}}}}, clock});
+    write_session(folder, "wants", 0,
+                  {hello, ViewerSettings{1, 0.5f, true}, camera_update(1), ViewerSettings{-1, 0, false}, clock,
+                   Ack{1, 0, 0}, Ack{2, 0, 0}, camera_update(2), Failure{"enough"}});
+}
+
+/// Writes what viewers say who come back: the ticket of a number is that of this welcome.
+void write_returns(std::filesystem::path const& folder) {
+    using namespace session_input;
+    constexpr unsigned anew = is_cut | connects;
+    auto const hello = [](std::string const& with, std::uint64_t ticket = 0, std::uint64_t last_batch = 0) {
+        return Hello{protocol_version, with, coding::all, {0, ticket}, last_batch};
+    };
+    Hello const plain = hello(""), other_codings{protocol_version, "", coding::exact_colour, {0, 1}, 1};
+    write_session(
+        folder, "comes_back", 0,
+        {plain, camera_update(1), Ack{1, 1000, 100}, {anew, hello("", 1, 2)}, camera_update(2), Ack{3, 0, 0}});
+    write_session(folder, "lacks", 0, {plain, camera_update(1), {anew, hello("", 1)}, camera_update(1), Ack{1, 0, 0}});
+    write_session(folder, "half_open", has_control_token,
+                  {hello(control_token), camera_update(1), {connects, hello(control_token, 1, 1)}, camera_update(2)});
+    write_session(folder, "cut_twice", 0,
+                  {plain, camera_update(1), {anew, hello("", 1, 1)}, {anew, hello("", 1, 1)}, camera_update(1)});
+    write_session(folder, "fits_not", 0, {plain, camera_update(1), {anew, other_codings}, camera_update(1)});
+    write_session(folder, "guesses", asks_for_token,
+                  {hello("a guess"),
+                   {connects, Hello{protocol_version + 1, token}},
+                   {connects, Ack{}},
+                   {connects, hello(token, 7, 7)},
+                   camera_update(1)});
+    write_session(folder, "are_many", shares_control,
+                  {plain,
+                   camera_update(1),
+                   {connects, plain},
+                   camera_update(1),
+                   {connects, plain},
+                   {anew, plain},
+                   {anew, hello("", 1, 1)},
+                   camera_update(2)});
+    write_session(folder, "take_turns", asks_for_token | has_control_token,
+                  {hello(control_token),
+                   camera_update(1, {160, 120}),
+                   {anew, hello(token)},
+                   camera_update(1, {160, 120}),
+                   {anew, hello(token)},
+                   camera_update(1, {160, 120}),
+                   {anew, hello(control_token, 1, 1)},
+                   camera_update(2)});
 }
 
 void write_secrets(std::filesystem::path const& folder) {
@@ -242,6 +301,7 @@ int main(int argc, char** argv) {
     }
     write_files(folder);
     write_sessions(folder);
+    write_returns(folder);
     write_secrets(folder);
     int number = 0;
     SceneCameraInfo const camera{"camera", {}};

@@ -18,7 +18,14 @@ public:
     void close() override { is_closed = true; }
     std::string peer() const override { return "nobody"; }
 
+    bool was_cut() const override { return was_cut_; }
+
     void bring(Message const& message) { handlers_.on_message(message); }
+    /// Ends the connection from the other side; `cut`: without a word.
+    void lose(std::string const& reason, bool cut) {
+        was_cut_ = cut;
+        handlers_.on_close(reason);
+    }
     /// Releases what the callbacks hold, as when a connection has ended.
     void forget_handlers() { handlers_ = {}; }
 
@@ -26,6 +33,7 @@ public:
 
 private:
     Handlers handlers_;
+    bool was_cut_ = false;
 };
 
 /// A connection of a test, which ends with this object: a session and the callbacks of its connection hold each other
