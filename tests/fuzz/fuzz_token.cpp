@@ -1,16 +1,14 @@
 // Reads what users keep of secrets: files of tokens and of known servers, whatever is in them. Input: one byte, what
 // the file is; its content.
 #include <filesystem>
-#include <fstream>
 #include <string>
-
-#include <unistd.h>
 
 #include "common/error.h"
 #include "protocol/messages/message.h"
 #include "protocol/messages/message_codec.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/token.h"
+#include "tests/fuzz/input_file.h"
 
 namespace {
 
@@ -46,18 +44,14 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     if (size < 1) {
         return 0;
     }
-    static std::filesystem::path const file =
-        std::filesystem::temp_directory_path() / ("framelet-fuzz-token-" + std::to_string(::getpid()));
-    std::ofstream(file, std::ios::binary)
-        .write(reinterpret_cast<char const*>(data + 1), static_cast<std::streamsize>(size - 1));
+    InputFile const file(data + 1, size - 1, "");
     try {
         if (data[0] % 2 == 0) {
-            read_token(file);
+            read_token(file.path());
         } else {
-            judge(file);
+            judge(file.path());
         }
     } catch (InputError const&) {
     }
-    std::filesystem::remove(file);
     return 0;
 }

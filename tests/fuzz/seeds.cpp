@@ -1,4 +1,5 @@
 // The program `fuzz_seeds FOLDER`: writes well-formed inputs of every fuzz target, one folder each.
+#include <bit>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -147,6 +148,24 @@ std::vector<std::uint8_t> bytes_of(std::string const& text) {
     return {text.begin(), text.end()};
 }
 
+/// `count` bytes of a number, the least significant first.
+std::string number(std::size_t value, std::size_t count = 4) {
+    std::string out;
+    for (std::size_t i = 0; i < count; ++i) {
+        out.push_back(static_cast<char>(value >> (8 * i)));
+    }
+    return out;
+}
+
+/// An STL file with one triangle, in its form of bytes.
+std::string stl_bytes() {
+    std::string out = std::string(80, ' ') + number(1);
+    for (float const value : {0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f, 0.f, 0.f, 1.f, 0.f}) {
+        out += number(std::bit_cast<std::uint32_t>(value));
+    }
+    return out + number(0, 2);
+}
+
 void write_files(std::filesystem::path const& folder) {
     write(folder / "camera" / "still",
           bytes_of(R"({"position":[9,4,12],"target":[0,1,0],"up":[0,1,0],"fov_degrees":50})"));
@@ -160,17 +179,14 @@ void write_files(std::filesystem::path const& folder) {
         "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
     write(folder / "scene" / "gltf", bytes_of(std::string(1, '\0') + gltf));
     std::string const padded = gltf + std::string((4 - gltf.size() % 4) % 4, ' ');
-    auto const number = [](std::size_t value) {
-        std::string out;
-        for (int shift = 0; shift < 32; shift += 8) {
-            out.push_back(static_cast<char>(value >> shift));
-        }
-        return out;
-    };
     write(folder / "scene" / "glb",
           bytes_of("\1glTF" + number(2) + number(20 + padded.size()) + number(padded.size()) + "JSON" + padded));
     write(folder / "scene" / "obj", bytes_of("\2o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 "
                                              "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
+    write(folder / "scene" / "stl", bytes_of("\3" + stl_bytes()));
+    write(folder / "scene" / "stl_text",
+          bytes_of("\3solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+                   "endfacet\nendsolid s\n"));
 }
 
 /// What a viewer says, and what happens before it: bits of session_input.h.
