@@ -5,6 +5,7 @@
 #include <iostream>
 #include <random>
 
+#include "common/files/picture_writer.h"
 #include "protocol/codec/batch_codec.h"
 #include "protocol/codec/color/plane_codec.h"
 #include "protocol/codec/geometry/shape_coding.h"
@@ -189,6 +190,44 @@ void write_files(std::filesystem::path const& folder) {
                    "endfacet\nendsolid s\n"));
 }
 
+/// A segment of a JPEG file.
+std::string jpeg_segment(char marker, std::string const& content) {
+    return std::string("\xff") + marker + '\0' + static_cast<char>(content.size() + 2) + content;
+}
+
+/// A grey JPEG file of one block. Each of its codes is of one bit.
+std::string jpeg_bytes() {
+    std::string const sides("\0\2\0\2", 4);
+    std::string const only_code = '\1' + std::string(15 + 1, '\0'); // of length 1, which stands for 0
+    return "\xff\xd8" + jpeg_segment('\xdb', '\0' + std::string(64, '\1')) +
+           jpeg_segment('\xc0', '\x8' + sides + std::string("\1\1\x11\0", 4)) + jpeg_segment('\xc4', '\0' + only_code) +
+           jpeg_segment('\xc4', '\x10' + only_code) + jpeg_segment('\xda', std::string("\1\1\0\0\x3f\0", 6)) +
+           "\x3f\xff\xd9";
+}
+
+/// Writes pictures of 2x2 pixels, and the beginning of one that is a texture elsewhere.
+void write_pictures(std::filesystem::path const& folder) {
+    std::filesystem::create_directories(folder);
+    Picture picture(2, 2);
+    for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
+        picture.rgba[i] = static_cast<std::uint8_t>(i % 4 == 3 ? 255 : 16 * i);
+    }
+    write_png(folder / "png", picture);
+    write_ppm(folder / "ppm", picture);
+    write_exr(folder / "exr", picture, {});
+    write_exr(folder / "exr_depth", picture, {1, 2, 3, 4});
+    std::string const texels = "abcdefghijkl";
+    write(folder / "jpeg", bytes_of(jpeg_bytes()));
+    write(folder / "webp", bytes_of("RIFF" + number(26) + "WEBPVP8L" + number(13) +
+                                    std::string("\x2f\0\0\0\x10\7\x10\x11\x11\x88\x88\xfe\7\0", 14)));
+    write(folder / "tga", bytes_of(std::string("\0\0\2", 3) + std::string(9, '\0') + number(2, 2) + number(2, 2) +
+                                   number(24, 2) + texels));
+    write(folder / "bmp", bytes_of("BM" + number(70) + number(0) + number(54) + number(40) + number(2) + number(2) +
+                                   number(1, 2) + number(24, 2) + std::string(24, '\0') + texels + "    "));
+    write(folder / "hdr", bytes_of("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + texels + "mnop"));
+    write(folder / "ktx2", bytes_of("\xabKTX 20\xbb\r\n\x1a\n" + std::string(68, '\0')));
+}
+
 /// What a viewer says, and what happens before it: bits of session_input.h.
 struct Said {
     Said(auto said) : message(std::move(said)) {}
@@ -316,6 +355,7 @@ int main(int argc, char** argv) {
         }
     }
     write_files(folder);
+    write_pictures(folder / "picture");
     write_sessions(folder);
     write_returns(folder);
     write_secrets(folder);
