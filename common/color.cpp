@@ -1,7 +1,5 @@
 #include "common/color.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 
 namespace framelet {

@@ -1,7 +1,6 @@
 #include "common/files/image_io.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <memory>
 #include <mutex>

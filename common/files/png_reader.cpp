@@ -11,8 +11,6 @@
 namespace framelet {
 namespace {
 
-constexpr std::size_t signature_bytes = 8;
-
 /// The bytes left to read, and the library's message about a failure.
 struct Source {
     std::span<std::byte const> left;
@@ -79,11 +77,6 @@ bool read_rows(Reader const& reader, png_bytepp rows) {
 }
 
 } // namespace
-
-bool is_png(std::span<std::byte const> bytes) {
-    return bytes.size() >= signature_bytes &&
-           png_sig_cmp(reinterpret_cast<png_const_bytep>(bytes.data()), 0, signature_bytes) == 0;
-}
 
 Picture read_png(std::span<std::byte const> bytes, SizeCheck const& check) {
     Source source{bytes};

@@ -15,8 +15,6 @@ struct PngError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
 
-bool is_png(std::span<std::byte const> bytes);
-
 Picture read_png(std::span<std::byte const> bytes, SizeCheck const& check);
 
 } // namespace framelet

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cmath>
 #include <span>
-#include <utility>
 
 #include <glm/gtc/quaternion.hpp>
 #include <glm/matrix.hpp>

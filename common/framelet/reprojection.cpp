@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 
-#include <glm/geometric.hpp>
+#include <glm/common.hpp>
 #include <glm/matrix.hpp>
 
 namespace framelet {

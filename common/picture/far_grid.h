@@ -2,7 +2,6 @@
 // [Scherzer 2012] section 3.3): what a moving edge uncovers belongs to the background.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstring>

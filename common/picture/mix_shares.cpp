@@ -1,7 +1,6 @@
 #include "common/picture/mix_shares.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 #include "common/error.h"

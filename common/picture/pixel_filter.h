@@ -11,8 +11,8 @@ namespace framelet {
 /// Largest difference of green bytes that is not an outline: what a surface shows stays sharp.
 inline constexpr int flat_contrast = 26;
 
-/// Alpha of a pixel that `filter_pixels` is to leave as it is (filled holes too), and of one that it filters.
-inline constexpr std::uint8_t exact_alpha = 255, moved_alpha = 0;
+/// Alpha of a pixel that `filter_pixels` is to leave as it is (filled holes too); it filters those with another one.
+inline constexpr std::uint8_t exact_alpha = 255;
 
 /// Writes `rect` of `filtered` from `picture`, which has its size. Pixels with `exact_alpha` stay as they are, and
 /// those that differ from none of the four beside them by more than `contrast`. The others become, in linear light

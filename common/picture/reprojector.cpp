@@ -117,7 +117,7 @@ void copy_rows(void const* block, Viewport viewport, int left, int top, void* pl
     }
 }
 
-/// Writes a block's colours, with `moved_alpha` where what shows was moved.
+/// Writes a block's colours, with an alpha of 0 where what shows was moved.
 void write_colors(WarpedBlock const& block, int left, int top, Picture& picture) {
     alignas(64) std::array<std::uint32_t, WarpedBlock::pixels> colors;
     for (std::size_t i = 0; i < WarpedBlock::pixels; i += wide_count) {

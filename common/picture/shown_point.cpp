@@ -1,7 +1,6 @@
 #include "common/picture/shown_point.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 #include "common/picture/pool_plan.h"

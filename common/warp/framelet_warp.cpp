@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>

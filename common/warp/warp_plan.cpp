@@ -1,7 +1,6 @@
 #include "common/warp/warp_plan.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 
 #include <tbb/parallel_for.h>

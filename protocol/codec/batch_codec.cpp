@@ -1,7 +1,6 @@
 #include "protocol/codec/batch_codec.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <utility>
 

@@ -1,7 +1,5 @@
 #include "protocol/messages/message_codec.h"
 
-#include <cstring>
-
 #include "common/error.h"
 #include "protocol/messages/message_wire.h"
 

@@ -3,7 +3,6 @@
 // values), `problem` names the first field whose number is out of its range, nullptr where all are fine.
 #pragma once
 
-#include <cmath>
 #include <string>
 
 #include <framelet_generated.h>

@@ -18,7 +18,7 @@ Picture random_picture(int width, int height, unsigned seed) {
         byte = static_cast<std::uint8_t>(random());
     }
     for (std::size_t i = 3; i < picture.rgba.size(); i += 4) {
-        picture.rgba[i] = random() % 2 == 0 ? exact_alpha : moved_alpha;
+        picture.rgba[i] = random() % 2 == 0 ? exact_alpha : std::uint8_t{0};
     }
     return picture;
 }

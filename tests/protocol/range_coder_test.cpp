@@ -1,5 +1,6 @@
 #include "protocol/codec/entropy/range_coder.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <functional>
-#include <span>
 
 #include "common/mix_bits.h"
 #include "common/morton.h"

@@ -2,7 +2,6 @@
 // function gives the number that was coded, and a reader does not look at the one that it is given.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
