@@ -130,16 +130,32 @@ private:
     CLI::App* app_;
 };
 
+/// Prints help in groups, with range and default of each option at its end.
+class HelpFormatter : public CLI::Formatter {
+public:
+    std::string make_group(std::string name, bool positional, std::vector<CLI::Option const*> options) const override {
+        std::string out = name + ":\n";
+        for (CLI::Option const* const option : options) {
+            out += make_option(option, positional);
+        }
+        return positional ? "\n" + out + "\n" : out;
+    }
+
+    std::string make_option(CLI::Option const* option, bool /*positional*/) const override {
+        OptionText const text = option_text(*option);
+        std::string const value = text.value.empty() ? "" : " " + text.value;
+        return in_columns("  " + CLI::detail::join(text.names, ", ") + value, text.description);
+    }
+};
+
 bool could_be_value(CLI::Option* option, std::string word) {
     return option->get_validator(0)->operator()(word).empty();
 }
 
 std::string footer_of(ProgramNotes const& notes) {
     std::string out;
-    for (std::size_t start = 0; start < notes.text.size();) {
-        std::size_t const end = std::min(notes.text.find("\n\n", start), notes.text.size());
-        out += wrapped(notes.text.substr(start, end - start), help_columns) + "\n";
-        start = end + 2;
+    for (std::string const& paragraph : paragraphs_of(notes.text)) {
+        out += wrapped(paragraph, help_columns) + "\n";
     }
     out += notes.exit_codes.empty() ? "" : "Exit codes:\n";
     for (ExitCode const& exit : notes.exit_codes) {
@@ -203,21 +219,6 @@ int print(CLI::App const& app, UsageProblem const& problem) {
 }
 
 } // namespace
-
-std::string HelpFormatter::make_group(std::string name, bool positional,
-                                      std::vector<CLI::Option const*> options) const {
-    std::string out = name + ":\n";
-    for (CLI::Option const* const option : options) {
-        out += make_option(option, positional);
-    }
-    return positional ? "\n" + out + "\n" : out;
-}
-
-std::string HelpFormatter::make_option(CLI::Option const* option, bool) const {
-    OptionText const text = option_text(*option);
-    std::string const value = text.value.empty() ? "" : " " + text.value;
-    return in_columns("  " + CLI::detail::join(text.names, ", ") + value, text.description);
-}
 
 void prepare_command_line(CLI::App& app, ProgramNotes const& notes) {
     app.formatter(std::make_shared<HelpFormatter>());

@@ -14,12 +14,7 @@
 
 namespace framelet {
 
-/// Help in groups, at most `help_columns` wide, with range and default of each option at its end.
-class HelpFormatter : public CLI::Formatter {
-public:
-    std::string make_group(std::string name, bool positional, std::vector<CLI::Option const*> options) const override;
-    std::string make_option(CLI::Option const* option, bool positional) const override;
-};
+/// Largest number of columns of --help.
 inline constexpr std::size_t help_columns = 100;
 
 /// Sets the formatter, --help, --version and, for the build alone, --help-as: the manual page or bash's completion.
@@ -49,9 +44,9 @@ CLI::Validator readable_by(Read read) {
 /// the program takes. Throws CLI::ParseError.
 void parse_command_line(CLI::App& app, int argc, char const* const* argv);
 
-/// What is said, in one line, of a command line that cannot be used.
+/// The complaint about a command line that cannot be used.
 struct UsageProblem {
-    std::string text; ///< without the program's name
+    std::string text; ///< one line, without the program's name
     int exit_code = 2; ///< 1 where the file that --config names cannot be read
 };
 /// `error` is none of --help and --version.

@@ -49,17 +49,6 @@ std::string prose(std::string const& text) {
     return wrapped(words, line_columns);
 }
 
-std::string paragraphs(std::string const& text) {
-    std::string out, separator;
-    for (std::size_t start = 0; start < text.size();) {
-        std::size_t const end = std::min(text.find("\n\n", start), text.size());
-        out += separator + prose(text.substr(start, end - start));
-        separator = ".PP\n";
-        start = end + 2;
-    }
-    return out;
-}
-
 std::string bold(std::string const& text) {
     return "\\fB" + plain(text) + "\\fR";
 }
@@ -140,8 +129,8 @@ std::string man_page(CLI::App const& app, ProgramNotes const& notes) {
         out += synopsis(*command, name + " " + command->get_name()) + ".br\n";
     }
     out += synopsis(app, name) + ".SH DESCRIPTION\n" + prose(app.get_description());
-    if (!notes.text.empty()) {
-        out += ".PP\n" + paragraphs(notes.text);
+    for (std::string const& paragraph : paragraphs_of(notes.text)) {
+        out += ".PP\n" + prose(paragraph);
     }
     if (!commands.empty()) {
         out += ".SH COMMANDS\n";

@@ -57,6 +57,16 @@ std::string wrapped(std::string const& text, std::size_t columns, std::string co
     return line.empty() ? out : out + indent + line + "\n";
 }
 
+std::vector<std::string> paragraphs_of(std::string const& text) {
+    std::vector<std::string> out;
+    for (std::size_t start = 0; start < text.size();) {
+        std::size_t const end = std::min(text.find("\n\n", start), text.size());
+        out.push_back(text.substr(start, end - start));
+        start = end + 2;
+    }
+    return out;
+}
+
 std::vector<CLI::Option const*> positionals(CLI::App const& app) {
     return app.get_options([](CLI::Option const* option) { return option->get_positional(); });
 }

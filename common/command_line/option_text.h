@@ -21,6 +21,9 @@ OptionText option_text(CLI::Option const& option);
 /// `text` in lines of at most `columns`, each with `indent` before it.
 std::string wrapped(std::string const& text, std::size_t columns, std::string const& indent = "");
 
+/// The paragraphs of a text, which have an empty line between them.
+std::vector<std::string> paragraphs_of(std::string const& text);
+
 /// The positional arguments, in order.
 std::vector<CLI::Option const*> positionals(CLI::App const& app);
 /// All other options of a group; hidden ones, whose group is empty, are of none.
