@@ -60,14 +60,21 @@ std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const
     if (depth == plane_.max_depth()) {
         return 0;
     }
-    Level const& below = level(depth + 1);
     std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
-    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
-        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
-            lowest = std::min(lowest, node(depth + 1, x, y).cover);
+    for_each_child(depth, column, row, [&](int x, int y) { lowest = std::min(lowest, node(depth + 1, x, y).cover); });
+    return lowest;
+}
+
+CachedFramelet const* FrameletCache::newest_over(int block_column, int block_row) const {
+    int const depth = plane_.pixel_depth();
+    CachedFramelet const* newest = nullptr;
+    for (int d = plane_.min_depth(); d <= depth; ++d) {
+        CachedFramelet const* const found = find(d, block_column >> (depth - d), block_row >> (depth - d));
+        if (found != nullptr && (newest == nullptr || found->moment.batch >= newest->moment.batch)) {
+            newest = found;
         }
     }
-    return lowest;
+    return newest;
 }
 
 std::size_t FrameletCache::insert(Batch const& batch, std::span<std::uint8_t const> chosen) {
@@ -178,10 +185,7 @@ void FrameletCache::note_placed(CachedFramelet const& cached) {
     int const row = static_cast<int>(cached.tile.row());
     ++views_[cached.view].framelets;
     views_[cached.view].moving_framelets += cached.shape.moves ? 1 : 0;
-    refresh(depth, column, row);
-    for (int d = depth - 1; d >= plane_.min_depth(); --d) {
-        refresh(d, column >> (depth - d), row >> (depth - d));
-    }
+    refresh_upwards(depth, column, row);
     mark(plane_.tile_rect(cached.tile));
     mark_neighbours(cached.tile, cached.moment);
 }
@@ -202,20 +206,17 @@ void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64
     if (depth == plane_.max_depth()) {
         return;
     }
-    Level const& below = level(depth + 1);
-    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
-        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
-            Node& child = node(depth + 1, x, y);
-            if (child.held == 0) {
-                continue;
-            }
-            if (child.slot != no_slot && held(child.slot).moment.batch < batch) {
-                drop(child);
-            }
-            drop_older_below(depth + 1, x, y, batch);
-            refresh(depth + 1, x, y);
+    for_each_child(depth, column, row, [&](int x, int y) {
+        Node& child = node(depth + 1, x, y);
+        if (child.held == 0) {
+            return;
         }
-    }
+        if (child.slot != no_slot && held(child.slot).moment.batch < batch) {
+            drop(child);
+        }
+        drop_older_below(depth + 1, x, y, batch);
+        refresh(depth + 1, x, y);
+    });
 }
 
 void FrameletCache::drop(Node& owner) {
@@ -269,12 +270,14 @@ void FrameletCache::refresh(int depth, int column, int row) {
     own.cover = std::max(below, own.slot == no_slot ? 0 : held(own.slot).moment.batch);
     own.held = own.slot == no_slot ? 0 : 1;
     if (depth < plane_.max_depth()) {
-        Level const& children = level(depth + 1);
-        for (int y = 2 * row; y < std::min(2 * row + 2, children.rows); ++y) {
-            for (int x = 2 * column; x < std::min(2 * column + 2, children.columns); ++x) {
-                own.held += node(depth + 1, x, y).held;
-            }
-        }
+        for_each_child(depth, column, row, [&](int x, int y) { own.held += node(depth + 1, x, y).held; });
+    }
+}
+
+/// Brings a node up to date, and then those that it lies in.
+void FrameletCache::refresh_upwards(int depth, int column, int row) {
+    for (int d = depth; d >= plane_.min_depth(); --d) {
+        refresh(d, column >> (depth - d), row >> (depth - d));
     }
 }
 
@@ -298,9 +301,7 @@ void FrameletCache::keep(std::span<Tile const> tiles, std::vector<SentTile>& gon
         int const column = static_cast<int>(tile.column());
         int const row = static_cast<int>(tile.row());
         drop(node(depth, column, row));
-        for (int d = depth; d >= plane_.min_depth(); --d) {
-            refresh(d, column >> (depth - d), row >> (depth - d));
-        }
+        refresh_upwards(depth, column, row);
     }
 }
 
@@ -409,12 +410,7 @@ double FrameletCache::covered_area(int depth, int column, int row) const {
                static_cast<double>(std::min(rect.bottom, viewport.height) - rect.top);
     }
     double area = 0;
-    Level const& below = level(depth + 1);
-    for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
-        for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
-            area += covered_area(depth + 1, x, y);
-        }
-    }
+    for_each_child(depth, column, row, [&](int x, int y) { area += covered_area(depth + 1, x, y); });
     return area;
 }
 

@@ -3,6 +3,7 @@
 // The set that is held depends on the batches inserted, not on the order in which they came.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -157,6 +158,9 @@ public:
     }
     /// A number for each square, which becomes another one where one of its versions does.
     std::span<std::uint64_t const> square_changes() const { return square_changes_; }
+    /// The newest framelet that covers all of a block of 16x16 pixels, of two of one batch the finer one; null where
+    /// none does.
+    CachedFramelet const* newest_over(int block_column, int block_row) const;
     /// The lowest batch number that shows through where only the tiles below this one are looked at; 0 where they leave
     /// a part of it bare. The tile must be visible.
     std::uint64_t covered_below(int depth, int column, int row) const;
@@ -188,6 +192,16 @@ private:
     Node& node(int depth, int column, int row) {
         return const_cast<Node&>(std::as_const(*this).node(depth, column, row));
     }
+    /// Calls `visit(column, row)` for the visible tiles of the next depth that a tile is made of.
+    template <class Visit>
+    void for_each_child(int depth, int column, int row, Visit const& visit) const {
+        Level const& below = level(depth + 1);
+        for (int y = 2 * row; y < std::min(2 * row + 2, below.rows); ++y) {
+            for (int x = 2 * column; x < std::min(2 * column + 2, below.columns); ++x) {
+                visit(x, y);
+            }
+        }
+    }
     CachedFramelet const& held(std::int32_t slot) const {
         auto const index = static_cast<std::size_t>(slot);
         return (*chunks_[index / std::tuple_size_v<Chunk>])[index % std::tuple_size_v<Chunk>];
@@ -207,6 +221,7 @@ private:
     void release(std::int32_t slot);
     std::int32_t take_slot();
     void refresh(int depth, int column, int row);
+    void refresh_upwards(int depth, int column, int row);
     void mark(PixelRect rect);
     void mark_neighbours(Tile tile, Moment const& moment);
     void mark_block(int column, int row);

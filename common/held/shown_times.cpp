@@ -14,7 +14,7 @@ struct Sum {
     double times = 0;
 };
 
-/// Adds what shows of a tile, over which `above` is the newest coarser framelet.
+/// Adds what shows of a tile; `above` is the newest framelet that covers all of it.
 void add_tile(FrameletCache const& cache, int depth, int column, int row, CachedFramelet const* above, double area,
               Sum& sum) {
     CachedFramelet const* const own = cache.find(depth, column, row);
@@ -31,16 +31,8 @@ void add_tile(FrameletCache const& cache, int depth, int column, int row, Cached
 }
 
 std::optional<SceneTime> time_of_block(FrameletCache const& cache, int column, int row) {
-    int const depth = cache.plane().pixel_depth();
-    CachedFramelet const* newest = nullptr;
-    for (int d = cache.plane().min_depth(); d < depth; ++d) {
-        CachedFramelet const* const coarse = cache.find(d, column >> (depth - d), row >> (depth - d));
-        if (coarse != nullptr && (newest == nullptr || coarse->moment.batch >= newest->moment.batch)) {
-            newest = coarse;
-        }
-    }
     Sum sum;
-    add_tile(cache, depth, column, row, newest, 1, sum);
+    add_tile(cache, cache.plane().pixel_depth(), column, row, cache.newest_over(column, row), 1, sum);
     return sum.area > 0 ? std::optional(sum.times / sum.area) : std::nullopt;
 }
 

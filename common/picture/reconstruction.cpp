@@ -223,22 +223,9 @@ void paint_uncovered(TransferTables const& tables, Block& block) {
     block.fill(pixel_at(tables, step, step, step));
 }
 
-/// The newest framelet that covers the whole block; of two of one batch the finer one.
-CachedFramelet const* newest_over(FrameletCache const& cache, int column, int row) {
-    int const depth = cache.plane().pixel_depth();
-    CachedFramelet const* newest = nullptr;
-    for (int d = cache.plane().min_depth(); d <= depth; ++d) {
-        CachedFramelet const* const found = cache.find(d, column >> (depth - d), row >> (depth - d));
-        if (found != nullptr && (newest == nullptr || found->moment.batch >= newest->moment.batch)) {
-            newest = found;
-        }
-    }
-    return newest;
-}
-
 void paint_block(TransferTables const& tables, FrameletCache const& cache, int column, int row, Block& block) {
     int const depth = cache.plane().pixel_depth();
-    CachedFramelet const* const base = newest_over(cache, column, row);
+    CachedFramelet const* const base = cache.newest_over(column, row);
     std::uint64_t const base_batch = base == nullptr ? 0 : base->moment.batch;
     if (base == nullptr) {
         paint_uncovered(tables, block);
