@@ -149,11 +149,6 @@ void take_picture(Picture const& picture, int left, int top, WarpedBlock& block)
     }
 }
 
-void write_plane(std::array<float, WarpedBlock::pixels> const& from, int left, int top, Viewport viewport,
-                 std::vector<float>& plane) {
-    copy_rows(from.data(), viewport, left, top, plane.data());
-}
-
 } // namespace
 
 /// True when all that is held stays where it is and no other moment may have what the base of the newest camera lacks.
@@ -165,7 +160,7 @@ bool Reprojector::is_in_place(FrameletPool const& pool, Camera const& camera, Sc
 
 void Reprojector::show_exact(FrameletPool const& pool, std::span<PixelRect const> changed, Picture& picture,
                              std::vector<PixelRect>& repainted) {
-    if (has_shown_ && is_exact_ && exact_slot_ == pool.newest_slot()) {
+    if (is_exact_ && exact_slot_ == pool.newest_slot()) {
         reconstruct(pool.newest(), changed, picture);
         repainted.assign(changed.begin(), changed.end());
     } else {
@@ -248,10 +243,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     if (fullest != nullptr && kept < least_kept * fullest->coverage()) {
         show_cut(*fullest, picture, repainted);
     } else if (canvas != nullptr) {
-        repainted.clear();
-        if (any) {
-            repainted.assign(1, {0, 0, viewport.width, viewport.height});
-        }
+        repainted.assign(any ? 1u : 0u, {0, 0, viewport.width, viewport.height});
     } else {
         if (any) {
             fill();
@@ -269,8 +261,8 @@ bool Reprojector::paint_blocks(FrameletPool const& pool, Camera const& camera, S
     tbb::parallel_for(0, rows_, [&](int row) {
         bool painted = false;
         std::vector<PatchView> patches;
-        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
-        for (int column = 0; column < columns_; ++column, ++index) {
+        for (int column = 0; column < columns_; ++column) {
+            std::size_t const index = index_of(column, row);
             if (is_wanted(index)) {
                 painted |= update_block(pool, camera, scene_time, motions, column, row, patches);
             }
@@ -292,8 +284,8 @@ bool Reprojector::paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera
         RowJobs& jobs = row_jobs_[static_cast<std::size_t>(row)];
         jobs.clear();
         std::vector<PatchView> patches;
-        auto index = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_);
-        for (int column = 0; column < columns_; ++column, ++index) {
+        for (int column = 0; column < columns_; ++column) {
+            std::size_t const index = index_of(column, row);
             if (!is_wanted(index)) {
                 continue;
             }
@@ -333,8 +325,7 @@ bool Reprojector::paint_on(BlockCanvas& canvas, FrameletPool const& pool, Camera
     for (RowJobs const& jobs : row_jobs_) {
         for (BlockJob const& job : jobs.blocks) {
             BlockReport const& report = reports_[next++];
-            BlockState& state = blocks_[static_cast<std::size_t>(job.row) * static_cast<std::size_t>(columns_) +
-                                        static_cast<std::size_t>(job.column)];
+            BlockState& state = blocks_[index_of(job.column, job.row)];
             state.holes = report.holes;
             state.slots = report.slots;
         }
@@ -355,8 +346,7 @@ void Reprojector::show_cut(FrameletCache const& moment, Picture& picture, std::v
 Reprojector::BlockPatches Reprojector::collect(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                                                BodyMotions const& motions, int column, int row,
                                                std::vector<PatchView>& patches) {
-    auto const index =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    std::size_t const index = index_of(column, row);
     FrameletCache const& newest = pool.newest();
     patches.clear();
     plans_[pool.newest_slot()].add_block(index, patches);
@@ -376,8 +366,7 @@ Reprojector::BlockPatches Reprojector::collect(FrameletPool const& pool, Camera 
 
 bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                                BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches) {
-    auto const index =
-        static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    std::size_t const index = index_of(column, row);
     auto const [signature, in_place] = collect(pool, camera, scene_time, motions, column, row, patches);
     bool const is_same = signature == blocks_[index].signature;
     if (is_same && (blocks_[index].slots & noted_slots_) == 0) {
@@ -397,7 +386,7 @@ bool Reprojector::update_block(FrameletPool const& pool, Camera const& camera, S
     } else {
         write_colors(block, left, top, unfiltered_);
     }
-    write_plane(block.inverse_depth, left, top, viewport, inverse_depth_);
+    copy_rows(block.inverse_depth.data(), viewport, left, top, inverse_depth_.data());
     block_means_[index] = far_mean(block);
     blocks_[index] = {signature, block.holes, slots_of(block)};
     painted_[index] = 1;
@@ -428,8 +417,7 @@ template <class Work>
 void Reprojector::for_each_block(Work const& work) {
     tbb::parallel_for(0, rows_, [&](int row) {
         for (int column = 0; column < columns_; ++column) {
-            work(column, row,
-                 static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column));
+            work(column, row, index_of(column, row));
         }
     });
 }
@@ -437,8 +425,7 @@ void Reprojector::for_each_block(Work const& work) {
 bool Reprojector::is_beside_hole(int column, int row) const {
     for (int y = std::max(row - 1, 0); y < std::min(row + 2, rows_); ++y) {
         for (int x = std::max(column - 1, 0); x < std::min(column + 2, columns_); ++x) {
-            if (blocks_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(x)]
-                    .holes > 0) {
+            if (blocks_[index_of(x, y)].holes > 0) {
                 return true;
             }
         }
@@ -471,9 +458,7 @@ void Reprojector::filter(Picture& picture) {
     filtered_.assign(painted_.size(), 0);
     for_each_block([&](int column, int row, std::size_t index) {
         auto const is_painted = [&](int x, int y) {
-            return x >= 0 && x < columns_ && y >= 0 && y < rows_ &&
-                   painted_[static_cast<std::size_t>(y) * static_cast<std::size_t>(columns_) +
-                            static_cast<std::size_t>(x)] != 0;
+            return x >= 0 && x < columns_ && y >= 0 && y < rows_ && painted_[index_of(x, y)] != 0;
         };
         if (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
             is_painted(column, row - 1) || is_painted(column, row + 1)) {

@@ -84,6 +84,9 @@ private:
     };
     BlockPatches collect(FrameletPool const& pool, Camera const& camera, SceneTime scene_time,
                          BodyMotions const& motions, int column, int row, std::vector<PatchView>& patches);
+    std::size_t index_of(int column, int row) const {
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
+    }
     /// True when a block has to be looked at.
     bool is_wanted(std::size_t block) const {
         return replanned_[block] != 0 || (blocks_[block].slots & noted_slots_) != 0;
