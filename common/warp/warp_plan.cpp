@@ -91,7 +91,6 @@ void WarpPlan::Square::give_back_room() {
 
 void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
-    set_size(cache.plane().viewport());
     set_squares(cache);
     SceneTime const last_jump = motions.last_jump(display_time);
     bool const is_new = is_limited_ || outliers != outliers_ || !(display == display_) || last_jump != last_jump_;
@@ -156,17 +155,14 @@ void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
     }
 }
 
-void WarpPlan::set_size(Viewport viewport) {
-    columns_ = (viewport.width + block_side - 1) / block_side;
-    rows_ = (viewport.height + block_side - 1) / block_side;
-}
-
 void WarpPlan::set_squares(FrameletCache const& cache) {
     ImagePlane const& plane = cache.plane();
     if (!squares_.empty() && plane == plane_) {
         return;
     }
     plane_ = plane;
+    columns_ = (plane.viewport().width + block_side - 1) / block_side;
+    rows_ = (plane.viewport().height + block_side - 1) / block_side;
     squares_.clear();
     known_.clear();
     first_entry_.clear();
@@ -221,10 +217,10 @@ void WarpPlan::plan(Square& square, bool outliers, FrameletWarp& warp) {
         }
     }
     std::span<MergedSquare::Child const> const children = square.merged.children();
-    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | (outliers ? square.merged.children_with_outliers() : 0);
-         left != 0; left &= left - 1) {
+    std::uint64_t const with_outliers = outliers ? square.merged.children_with_outliers() : 0;
+    for (std::uint64_t left = alone[0] | alone[1] | alone[2] | with_outliers; left != 0; left &= left - 1) {
         auto const index = static_cast<std::size_t>(std::countr_zero(left));
-        unsigned parts = outliers && children[index].has_outliers ? 1u << FrameletShape::outlier : 0u;
+        unsigned parts = static_cast<unsigned>(with_outliers >> index & 1) << FrameletShape::outlier;
         for (std::size_t k = 0; k < max_layers; ++k) {
             parts |= static_cast<unsigned>(alone[k] >> index & 1) << k;
         }

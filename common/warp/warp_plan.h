@@ -101,7 +101,6 @@ private:
     using LayerBits = std::array<std::uint64_t, max_layers>;
 
     WarpPatch const& patch_at(std::uint32_t entry) const;
-    void set_size(Viewport viewport);
     void set_squares(FrameletCache const& cache);
     static void plan(Square& square, bool outliers, FrameletWarp& warp);
     static bool add_merged(MergedLayer const& merged, FrameletWarp& warp, Square& square);

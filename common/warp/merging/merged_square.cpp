@@ -99,13 +99,14 @@ void MergedSquare::make_room(ImagePlane const& plane) {
 bool MergedSquare::set_layers(std::uint64_t children) {
     for (std::uint64_t left = children; left != 0; left &= left - 1) {
         auto const index = static_cast<std::size_t>(std::countr_zero(left));
-        Child& child = children_[index];
-        if (child.framelet == nullptr) {
+        CachedFramelet const* const framelet = children_[index].framelet;
+        with_outliers_ &= ~(std::uint64_t{1} << index);
+        if (framelet == nullptr) {
             layers_->clear(index);
             continue;
         }
-        child.has_outliers = !child.framelet->shape.outliers.empty();
-        if (!layers_->set(index, child.framelet->view, child.framelet->moment.batch, child.framelet->shape)) {
+        with_outliers_ |= std::uint64_t{!framelet->shape.outliers.empty()} << index;
+        if (!layers_->set(index, framelet->view, framelet->moment.batch, framelet->shape)) {
             return false;
         }
     }
@@ -126,10 +127,8 @@ void MergedSquare::keep(CoplanarMerging const& merging) {
             }
         }
     }
-    with_outliers_ = 0;
     for (std::size_t index = 0; index < most_children; ++index) {
         Child& child = children_[index];
-        with_outliers_ |= std::uint64_t{child.has_outliers} << index;
         if (!child.is_written || child.numbers != numbers[index]) {
             child.numbers = numbers[index];
             child.is_written = true;

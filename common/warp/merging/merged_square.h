@@ -53,7 +53,6 @@ public:
     struct Child {
         CachedFramelet const* framelet = nullptr;
         std::array<std::uint8_t, max_layers> numbers{}; ///< of its layers in the grid
-        bool has_outliers = false;
         bool is_written = false; ///< its samples are in the grid
     };
 
@@ -118,7 +117,7 @@ private:
     std::unique_ptr<SquareLayers> layers_;
     std::vector<MergedLayer> merged_;
     std::vector<CoplanarLayers> quads_;
-    std::uint64_t with_outliers_ = 0;
+    std::uint64_t with_outliers_ = 0; ///< a bit for each child
     std::vector<PackedSample> grid_; ///< of the square, in rows
     std::uint64_t written_ = 0; ///< a bit for each child
 };
