@@ -236,7 +236,6 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
     if (is_predicted && (memory == nullptr || !ReferencePicture::holds(viewport))) {
         throw ProtocolError("a batch is predicted from what this viewer does not hold");
     }
-    bool const is_held = is_predicted || (memory != nullptr && memory->picture.shows(viewport));
     ImagePlane const plane(viewport);
     if (!std::ranges::all_of(encoded.tiles, [&](Tile tile) { return plane.accepts(tile); })) {
         throw ProtocolError("a batch has a tile that its viewport does not have");
@@ -271,7 +270,7 @@ void BatchCodec::decode(EncodedBatch const& encoded, BatchMemory* memory, Batch&
                                planes[group], is_predicted ? &memory->picture : nullptr);
         }
     });
-    if (is_held) {
+    if (memory != nullptr && memory->picture.shows(viewport)) {
         memory->picture.take(batch.framelets);
     }
     decode_shapes(encoded, plane, models, batch.shapes);

@@ -18,11 +18,8 @@ std::uint16_t octave_step(std::uint16_t base, std::size_t octave) {
     return static_cast<std::uint16_t>(base << (haar_octaves - 1 - octave));
 }
 
-/// Smallest share of a step that rounds a mean up, in 64ths.
-constexpr int mean_rounding = 32;
-
 std::int16_t quantised_mean(int value, int step) {
-    int const size = ((value < 0 ? -value : value) + step * mean_rounding / 64) / step;
+    int const size = (std::abs(value) + step / 2) / step;
     return static_cast<std::int16_t>(value < 0 ? -size : size);
 }
 

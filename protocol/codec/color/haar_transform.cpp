@@ -127,8 +127,8 @@ template <typename Body>
 } // namespace
 
 DetailStep::DetailStep(std::uint16_t step_of_levels) : step(step_of_levels) {
-    /// A size is rounded up where at most this share of a step, in 64ths, is missing to the next level: what is nearer
-    /// to zero costs more bytes than it removes error.
+    // A size is rounded up where at most this share of a step, in 64ths, is missing to the next level: what is nearer
+    // to zero costs more bytes than it removes error.
     constexpr unsigned share = 22;
     // The upper half of x times this is floor(x / step) for 16-bit x, or one more where x is less than x / 2^16 of a
     // step below a multiple.

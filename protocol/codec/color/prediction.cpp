@@ -14,7 +14,6 @@ constexpr int few_bits = 70;
 struct Way {
     Prediction prediction;
     HaarCode code; ///< of the residual
-    int bits = 0; ///< expected; where `code` gave up, fewer than it would take
 };
 
 } // namespace
@@ -28,10 +27,10 @@ HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& fra
     int least = std::numeric_limits<int>::max();
     // The way that is likely the best one comes first: all others end where they take more.
     auto const consider = [&](Way& way, DisplayValues const& values, int bits_beside) {
-        way.bits = code(values, qp, least - bits_beside, way.code) + bits_beside;
-        if (way.bits < least) {
+        int const bits = code(values, qp, least - bits_beside, way.code) + bits_beside;
+        if (bits < least) {
             best = &way;
-            least = way.bits;
+            least = bits;
         }
     };
     auto const consider_from = [&](MotionVector vector, Way& way, int bits_beside) {
