@@ -18,7 +18,7 @@ inline constexpr float least_view_height = 1e-4f, most_view_height = 1e10f; ///<
 
 /// Pose and lens. In its own space a camera looks down -Z with +Y up (as in glTF).
 struct Camera {
-    Vec3 position{0, 0, 0};
+    Vec3 position{0, 0, 0}; ///< in the world, metres
     Quat orientation{1, 0, 0, 0}; ///< rotates camera space into world space; unit length
     Projection projection = Projection::perspective;
     float vertical_extent = 0.8f; ///< perspective: vertical field of view, radians; orthographic: height, metres
@@ -45,8 +45,8 @@ inline constexpr int max_viewport_side = 16384;
 /// the same for direction. Directions are not normalised: their component along the camera's forward axis is 1, so the
 /// ray parameter t IS the view depth (metres along forward), and 1/t of a plane is affine in x and y.
 struct ViewRays {
-    Vec3 origin, origin_dx, origin_dy;
-    Vec3 direction, direction_dx, direction_dy;
+    Vec3 origin, origin_dx, origin_dy; ///< in the world, metres
+    Vec3 direction, direction_dx, direction_dy; ///< in the world, metres for each metre of view depth
 };
 
 ViewRays make_view_rays(Camera const& camera, Viewport viewport);

@@ -9,8 +9,8 @@
 
 namespace framelet {
 
-/// The bytes of a file with channels R, G, B: linear light of Rec.709 primaries as the picture shows it, [0, 1].
-/// `depths`: channel Z, in the order of the pixels; where it is empty there is no such channel.
+/// Makes the bytes of a file with channels R, G, B: linear light of Rec.709 primaries as the picture shows it, [0, 1].
+/// `depths` becomes channel Z, in the order of the pixels, metres; where it is empty there is no such channel.
 std::string exr_bytes(Picture const& picture, std::vector<float> const& depths);
 
 } // namespace framelet

@@ -19,7 +19,7 @@ std::optional<PictureFormat> picture_format(std::span<std::byte const> bytes);
 char const* foreign_format(std::span<std::byte const> bytes);
 
 struct PictureSize {
-    std::int64_t width = 0, height = 0; ///< >= 0
+    std::int64_t width = 0, height = 0; ///< pixels, >= 0
     bool operator==(PictureSize const&) const = default;
 };
 

@@ -78,8 +78,8 @@ private:
 /// Seconds of scene time before and after its rendering for which something has to rest to be held with what stands.
 inline constexpr SceneTime resting_seconds = 0.2;
 
-/// True when nothing in a framelet moves about the time when it was rendered: the bodies in it rest, and nothing
-/// deforms.
+/// True when nothing in a framelet moves about the time when it was rendered: the bodies in it rest, and no sample has
+/// a velocity besides.
 bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions);
 
 } // namespace framelet

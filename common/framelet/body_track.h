@@ -12,7 +12,7 @@ namespace framelet {
 /// A body's pose: world from body by scale, then rotation, then translation. Bodies that shear are not rigid and have
 /// velocities instead.
 struct BodyPose {
-    Vec3 translation{0};
+    Vec3 translation{0}; ///< in the world, metres
     Quat rotation{1, 0, 0, 0};
     Vec3 scale{1};
 
@@ -25,9 +25,10 @@ inline constexpr int body_keys_per_second = 60;
 /// Largest number of keys that all tracks which are given out together may have, so that what they take is bounded.
 inline constexpr std::size_t max_batch_keys = 131072;
 
+/// A part of a body's motion: its poses at keys that follow each other.
 struct BodyTrack {
     BodyNumber body = static_body;
-    std::int64_t first_key = 0;
+    std::int64_t first_key = 0; ///< number of the first key
     std::vector<BodyPose> keys;
 
     bool operator==(BodyTrack const&) const = default;

@@ -18,6 +18,7 @@ namespace framelet {
 using BodyNumber = std::uint16_t;
 inline constexpr BodyNumber static_body = 0;
 
+/// Largest number of layers of a framelet, also on the wire.
 inline constexpr std::size_t max_layers = 3;
 
 /// A decorrelation rate as a code: how soon a surface looks otherwise than it did (a shadow passes, a light changes)
@@ -39,7 +40,7 @@ struct Layer {
 
 /// A sample that lies on no layer.
 struct Outlier {
-    float inverse_depth = 0;
+    float inverse_depth = 0; ///< 1 / metres along the forward axis of the framelet's camera
     BodyNumber body = static_body;
     Vec3 velocity{0}; ///< as that of a layer, metres a second
 

@@ -33,8 +33,8 @@ struct HeldView {
     std::uint64_t number = 0; ///< the camera's
     Camera camera;
     SceneTime scene_time = 0;
-    std::uint32_t framelets = 0; ///< number of those that show in their places; 0: the entry is free
-    std::uint32_t moving_framelets = 0; ///< number of those that show something other than `static_body` at rest
+    std::uint32_t framelets = 0; ///< how many of them are held; 0: the entry is free
+    std::uint32_t moving_framelets = 0; ///< in how many of these something may move: it is on a body or has a velocity
 };
 
 /// A framelet as it is held: samples in rows, sample (i, j) at [16 * j + i]. Its parts begin lines of the processor's

@@ -1,4 +1,4 @@
-// The scene times from which the content of each block of a picture is. In: the cache, which of its blocks changed.
+// Finds from which scene time each block of a picture shows something. In: the cache, which of its blocks changed.
 // Out: scene times.
 #pragma once
 
@@ -14,8 +14,8 @@ namespace framelet {
 /// where none shows.
 using ShownTimes = std::vector<std::optional<SceneTime>>;
 
-/// Brings `times` up to date with `changed` (as `FrameletCache::take_changed` gives it). Where it is of another size
-/// than the cache's it is made anew as a whole.
+/// Brings `times` up to date with `changed` (as `FrameletCache::take_changed` gives it). Where `times` has not as many
+/// blocks as the cache's picture, it is made anew as a whole.
 void update_shown_times(FrameletCache const& cache, std::span<PixelRect const> changed, ShownTimes& times);
 
 /// Gives each block the time of the latest of the cache's framelets that lie in it, where that is later than its own.

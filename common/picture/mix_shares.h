@@ -10,16 +10,16 @@
 
 namespace framelet {
 
-/// How far a block has got at the time `shown` from content of `older` to content of `newer`: 0 at the older time, 1 at
-/// the newer one, linear between them and clamped beyond, whichever way the clock runs. A change takes no longer than
-/// `longest` seconds of scene time, the last ones before the newer content. 1 where nothing is older; nothing where
-/// both are the same.
+/// Says how far a block has got at the time `shown` from content of `older` to content of `newer`: 0 at the older time,
+/// 1 at the newer one, linear between them and clamped beyond, whichever way the clock runs. A change takes no longer
+/// than `longest` seconds of scene time, the last ones before the newer content. The result is 1 where either time is
+/// missing, and nothing where both are the same.
 std::optional<double> mix_amount(std::optional<SceneTime> older, std::optional<SceneTime> newer, SceneTime shown,
                                  SceneTime longest);
 
-/// `mix_amount` of every block (in rows of `columns`; as many of each). A block whose times are the same can change
-/// only by what has moved in from beside: it gets the mean of those blocks around it that do change, else of all that
-/// do, else `whole_share`.
+/// Finds `mix_amount` for every block (in rows of `columns`; as many of each). A block whose times are the same can
+/// change only by what has moved in from beside: it gets the mean of those blocks around it that do change, else of all
+/// that do, else `whole_share`.
 void mix_shares(ShownTimes const& older, ShownTimes const& newer, int columns, SceneTime shown, SceneTime longest,
                 std::vector<MixShare>& shares);
 

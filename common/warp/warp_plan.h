@@ -18,8 +18,8 @@
 
 namespace framelet {
 
-/// Where a patch's samples are in the grid of its square: from this column and row on, with this number instead of a
-/// layer's.
+/// The part of a square's grid that has a patch's samples: they begin in this column and row, and have this number
+/// instead of a layer's.
 struct GridPart {
     int column = 0, row = 0;
     std::uint32_t number = 0;
@@ -61,7 +61,7 @@ public:
     }
     /// The samples of a square, among which those of all its patches are.
     MergedSquare& square_grid(std::uint32_t square) { return squares_[square].merged; }
-    /// Where a patch's samples are in the grid of its square; the patch must not be of outliers. Nothing where they
+    /// Finds a patch's samples in the grid of its square; the patch must not be of outliers. Returns nothing where they
     /// are in the patch's own grid alone: there they are told from those of another layer, with which they are merged
     /// in the square's.
     std::optional<GridPart> grid_part(WarpPatch const& patch) const;
@@ -76,7 +76,7 @@ private:
 
         std::vector<WarpPatch> patches;
         std::vector<Splat> splats;
-        /// For each patch a bit for each of its framelets, as in `MergedLayer::parts`.
+        /// By patch: a bit for each of its framelets, as in `MergedLayer::parts`.
         std::vector<std::uint64_t> framelets;
         std::vector<std::uint8_t> shows; ///< by patch: whether something of it showed when blocks were painted
 

@@ -38,7 +38,7 @@ std::size_t get_length(std::byte const* in) {
     return length;
 }
 
-/// What the library has made. Throws std::bad_alloc where it is null: memory is all that is needed for it.
+/// Returns what the library has made. Throws std::bad_alloc where it is null: memory is all that is needed for it.
 template <typename Context>
 Context* made(Context* context) {
     if (context == nullptr) {

@@ -30,7 +30,6 @@ struct Ticket {
 };
 
 // --- upstream
-// ---------------------------------------------------------------------------------------------------------
 
 /// Bits for what a viewer can read; a server sends nothing else. `Hello::codings` is a sum of these; bits that a server
 /// does not know mean nothing to it.
@@ -42,7 +41,7 @@ inline constexpr std::uint32_t shapes_and_tracks = 32;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 
-/// First message of a connection.
+/// The first message of a connection.
 struct Hello {
     std::uint16_t version = protocol_version;
     std::string token; ///< empty where the server asks for none
@@ -83,7 +82,7 @@ struct ClockRequest {
 struct Ack {
     std::uint64_t batch = 0;
     std::uint64_t received_us = 0; ///< viewer's steady clock, microseconds, when the batch's last byte had arrived
-    std::uint32_t decode_us = 0;
+    std::uint32_t decode_us = 0; ///< microseconds from then until the batch was decoded
     bool operator==(Ack const&) const = default;
 };
 
@@ -95,8 +94,7 @@ struct Evicted {
 /// The largest number of framelets of one message; more are several messages.
 inline constexpr std::size_t max_evicted = 4096;
 
-// --- downstream
-// -------------------------------------------------------------------------------------------------------
+// --- downstream, and either direction
 
 struct SceneCameraInfo {
     std::string name;
@@ -104,7 +102,7 @@ struct SceneCameraInfo {
     bool operator==(SceneCameraInfo const&) const = default;
 };
 
-/// Answer to Hello: the session is open.
+/// The answer to Hello: the session is open.
 struct Welcome {
     std::uint16_t version = protocol_version;
     std::string server; ///< program and version
@@ -122,7 +120,7 @@ struct Welcome {
     std::uint64_t scene_source = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
 };
 
-/// Encoding of the samples of a batch.
+/// The encoding of a batch's samples, numbered as on the wire.
 enum class SampleEncoding : std::uint8_t {
     exact = 1, ///< all samples without loss
     haar = 7, ///< each framelet with a QP of its own
@@ -150,7 +148,7 @@ struct EncodedBatch {
     bool operator==(EncodedBatch const&) const = default;
 };
 
-/// Sent every second and whenever the clock or the convergence changes: a heartbeat.
+/// A heartbeat, which is sent every second and whenever the clock or the convergence changes.
 struct Status {
     ClockState clock;
     std::uint64_t last_batch = 0; ///< the newest batch of this session
@@ -174,7 +172,7 @@ struct Failure {
 using Message = std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Evicted, Welcome, EncodedBatch,
                              Status, Failure>;
 
-/// Largest message body that either side accepts, bytes: what one cycle's worst batch needs, with room.
+/// Largest message body that either side accepts, bytes: what the largest batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;
 /// The same limit before the handshake is over, and upstream at all times.
 inline constexpr std::size_t max_upstream_message_bytes = 64u << 10;

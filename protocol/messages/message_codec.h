@@ -5,9 +5,9 @@
 
 namespace framelet {
 
-/// Encodes the body of one message (without the length prefix). Every number must be inside its range (FRAMELET_CHECK);
-/// text is made one line of UTF-8 and cut to its limit, the last cameras of a Welcome that exceeds
-/// max_upstream_message_bytes are left out.
+/// Encodes the body of one message (without the length prefix). Throws UnsendableMessage where a number is out of its
+/// range. Text is made one line of UTF-8 and cut to its limit; of a Welcome that would exceed
+/// `max_upstream_message_bytes` the last cameras are left out.
 Bytes encode_message(Message const& message);
 /// Appends the same to `out`.
 void append_message(Message const& message, Bytes& out);

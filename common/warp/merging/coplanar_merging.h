@@ -36,7 +36,7 @@ class CoplanarMerging {
 public:
     void merge(SquareLayers const& layers, SampleGrid const& grid);
 
-    /// What the layers were merged into; each layer is part of one of these.
+    /// The planes that the layers were merged into; each layer is part of one of these.
     std::span<CoplanarLayers const> coplanar() const { return coplanar_; }
     /// The quads: four sibling framelets of one layer each, which all are part of one of `coplanar`.
     std::span<CoplanarLayers const> quads() const { return quads_; }

@@ -67,7 +67,7 @@ public:
     bool is_empty() const {
         return std::ranges::all_of(children_, [](Child const& child) { return child.framelet == nullptr; });
     }
-    /// What the layers were merged into; each layer is part of one of these.
+    /// The layers that those of the framelets were merged into; each of theirs is part of one of these.
     std::span<MergedLayer const> merged() const { return merged_; }
     /// Quads, of four framelets each, which are part of one of `merged()`.
     std::span<CoplanarLayers const> quads() const { return quads_; }

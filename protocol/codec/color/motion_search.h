@@ -11,7 +11,7 @@ namespace framelet {
 /// Searches for motion vectors, and remembers those that it has found: framelets near each other move alike.
 class MotionSearch {
 public:
-    /// Forgets all vectors.
+    /// Forgets all vectors, and what was noted.
     void begin() { *this = {}; }
     /// Finds the best vector of those tried: the ones found before, and steps from the best of them, down to half a
     /// pixel, or two pixels for coarse framelets. Returns zero where the picture is not kept for searches.
