@@ -11,10 +11,6 @@ namespace framelet {
 
 namespace {
 
-/// The least display depth as a share of the source depth at which something is drawn: what is nearer would fill the
-/// picture.
-constexpr double nearest = 1e-3;
-
 /// Smallest share of its area that a plane may keep in front of the display camera: less is edge-on.
 constexpr double thinnest = 1e-6;
 
@@ -63,12 +59,12 @@ PixelRect display_box(glm::dmat3 const& to_display, glm::dvec2 low, glm::dvec2 h
     for (std::size_t i = 0; i < corners.size(); ++i) {
         glm::dvec3 const& a = corners[i];
         glm::dvec3 const& b = corners[(i + 1) % corners.size()];
-        if (a.z >= nearest) {
+        if (a.z >= nearest_share) {
             include(a);
         }
-        if ((a.z >= nearest) != (b.z >= nearest)) {
-            glm::dvec3 crossing = a + (nearest - a.z) / (b.z - a.z) * (b - a);
-            crossing.z = nearest;
+        if ((a.z >= nearest_share) != (b.z >= nearest_share)) {
+            glm::dvec3 crossing = a + (nearest_share - a.z) / (b.z - a.z) * (b - a);
+            crossing.z = nearest_share;
             include(crossing);
         }
     }

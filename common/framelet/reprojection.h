@@ -32,6 +32,10 @@ constexpr bool is_reprojectable(Camera const& camera) {
     return camera.projection == Projection::perspective;
 }
 
+/// The least display depth, as a share of the source depth, at which something is drawn: what is nearer would fill the
+/// picture.
+inline constexpr double nearest_share = 1e-3;
+
 /// The transform of what has moved by `motion` and then by `drift` (metres in the world) between the two pictures.
 ViewTransform make_view_transform(ViewRays const& source, ViewRays const& display, Motion const& motion = {},
                                   glm::dvec3 drift = glm::dvec3(0));

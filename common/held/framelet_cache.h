@@ -143,10 +143,8 @@ public:
     /// free.
     std::size_t slot_count() const { return chunks_.size() * std::tuple_size_v<Chunk>; }
     CachedFramelet const* at_slot(std::size_t slot) const {
-        return tile_at_slot(slot) == no_tile ? nullptr : &held(static_cast<std::int32_t>(slot));
+        return slot_tiles_[slot] == no_tile ? nullptr : &held(static_cast<std::int32_t>(slot));
     }
-    /// The tile of a slot's framelet, without a look at the framelet; `no_tile` where the slot is free.
-    Tile tile_at_slot(std::size_t slot) const { return slot_tiles_[slot]; }
     /// The versions of the tiles of a depth in a visible square, whose column and row are counted in squares.
     SquareVersions const& versions(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
         return versions_[square_index(depth, square_column, square_row)];

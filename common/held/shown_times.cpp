@@ -36,25 +36,29 @@ std::optional<SceneTime> time_of_block(FrameletCache const& cache, int column, i
     return sum.area > 0 ? std::optional(sum.times / sum.area) : std::nullopt;
 }
 
+/// Calls `visit(column, row, time)` with the blocks of which a rectangle has pixels in the viewport, and their times.
+template <class Visit>
+void for_each_block(PixelRect const& rect, Viewport viewport, ShownTimes& times, Visit const& visit) {
+    auto const columns = static_cast<std::size_t>((viewport.width + side - 1) / side);
+    for (int row = rect.top / side; row * side < std::min(rect.bottom, viewport.height); ++row) {
+        for (int column = rect.left / side; column * side < std::min(rect.right, viewport.width); ++column) {
+            visit(column, row, times[static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column)]);
+        }
+    }
+}
+
 } // namespace
 
 void add_later_times(FrameletCache const& cache, ShownTimes& times) {
-    Viewport const viewport = cache.plane().viewport();
-    int const columns = (viewport.width + side - 1) / side;
+    ImagePlane const& plane = cache.plane();
     for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
         CachedFramelet const* const framelet = cache.at_slot(slot);
         if (framelet == nullptr) {
             continue;
         }
-        PixelRect const rect = cache.plane().tile_rect(framelet->tile);
-        for (int row = rect.top / side; row * side < std::min(rect.bottom, viewport.height); ++row) {
-            for (int column = rect.left / side; column * side < std::min(rect.right, viewport.width); ++column) {
-                std::optional<SceneTime>& time =
-                    times[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                          static_cast<std::size_t>(column)];
-                time = std::max(time.value_or(framelet->moment.scene_time), framelet->moment.scene_time);
-            }
-        }
+        SceneTime const own = framelet->moment.scene_time;
+        for_each_block(plane.tile_rect(framelet->tile), plane.viewport(), times,
+                       [own](int, int, std::optional<SceneTime>& time) { time = std::max(time.value_or(own), own); });
     }
 }
 
@@ -63,12 +67,9 @@ void update_shown_times(FrameletCache const& cache, std::span<PixelRect const> c
     int const columns = (viewport.width + side - 1) / side;
     int const rows = (viewport.height + side - 1) / side;
     auto const update = [&](PixelRect const& rect) {
-        for (int row = rect.top / side; row * side < rect.bottom; ++row) {
-            for (int column = rect.left / side; column * side < rect.right; ++column) {
-                times[static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
-                      static_cast<std::size_t>(column)] = time_of_block(cache, column, row);
-            }
-        }
+        for_each_block(rect, viewport, times, [&](int column, int row, std::optional<SceneTime>& time) {
+            time = time_of_block(cache, column, row);
+        });
     };
     auto const blocks = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
     if (times.size() != blocks) {

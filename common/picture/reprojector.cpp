@@ -15,6 +15,7 @@
 #include "common/picture/pixel_filter.h"
 #include "common/picture/reconstruction.h"
 #include "common/simd/lanes.h"
+#include "common/warp/warp_block.h"
 
 namespace framelet {
 

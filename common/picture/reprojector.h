@@ -13,7 +13,6 @@
 #include "common/picture/block_canvas.h"
 #include "common/picture/hole_fill.h"
 #include "common/picture/pixel_filter.h"
-#include "common/warp/warp_block.h"
 #include "common/warp/warp_plan.h"
 
 namespace framelet {

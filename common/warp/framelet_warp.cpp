@@ -15,9 +15,6 @@ namespace framelet {
 
 namespace {
 
-/// A sample nearer to the display camera than this share of its depth in the source is not drawn.
-constexpr double nearest = 1e-3;
-
 /// The bounds of a splat's radius, pixels: a smaller one would vanish between pixels' centres.
 constexpr double smallest_splat = 0.75;
 constexpr double largest_splat = 32;
@@ -223,7 +220,7 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     double const dy = transform_.far[1].z + layer.dy * parallax.z;
     double const z = transform_.map(rect.left + middle.x, rect.top + middle.y, w).z -
                      0.5 * (std::abs(dx) * (high.x - low.x) + std::abs(dy) * (high.y - low.y)); // the least z
-    double const within = pixels * std::max(z, nearest) / parallax_;
+    double const within = pixels * std::max(z, nearest_share) / parallax_;
     return within > 0 ? within : 0;
 }
 
@@ -295,7 +292,7 @@ bool FrameletWarp::project(HeldLayer const& held, WarpPatch& patch) const {
     }
     set_maps(*plane, patch);
     glm::dvec3 const middle((patch.box.left + patch.box.right) / 2.0, (patch.box.top + patch.box.bottom) / 2.0, 1);
-    double const inverse_z = std::max((plane->to_source * middle).z, nearest);
+    double const inverse_z = std::max((plane->to_source * middle).z, nearest_share);
     patch.tolerance = static_cast<float>(held.layer.error * inverse_z);
     return true;
 }
@@ -328,7 +325,7 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
         double const w = std::max(static_cast<double>(outlier.sample.inverse_depth), 0.0);
         glm::dvec3 const at = transform_.map(rect_.left + (outlier.index % patch.side + 0.5) * spacing_,
                                              rect_.top + (outlier.index / patch.side + 0.5) * spacing_, w);
-        if (!(at.z > nearest)) {
+        if (!(at.z > nearest_share)) {
             continue;
         }
         double const x = at.x / at.z;

@@ -6,7 +6,7 @@
 #include <cstdint>
 
 #include "common/simd/lanes.h"
-#include "common/warp/warp_plan.h"
+#include "common/warp/warp_patch.h"
 
 namespace framelet {
 
