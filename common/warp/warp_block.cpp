@@ -275,9 +275,7 @@ bool shows_enough(std::int32_t group, Layers const& layers) {
 
 /// Notes that a patch shows; other blocks may note the same at the same time.
 void note_shown(PatchView const& view) {
-    if (view.shows != nullptr) {
-        std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed);
-    }
+    std::atomic_ref(*view.shows).store(1, std::memory_order_relaxed);
 }
 
 } // namespace

@@ -73,7 +73,7 @@ struct Splat {
 struct PatchView {
     WarpPatch const* patch = nullptr;
     Splat const* splats = nullptr;
-    std::uint8_t* shows = nullptr; ///< set where enough of it shows in the picture; null: nobody asks
+    std::uint8_t* shows = nullptr; ///< where 1 is noted if enough of it shows in the picture
     std::uint64_t rank = 0; ///< of its samples: the best ones, and of equals the newest, have the least
 };
 

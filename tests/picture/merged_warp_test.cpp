@@ -76,6 +76,7 @@ TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
             alone(cache, display, 0.3, scene.motions, each, splats);
             std::size_t entries = 0, merged_entries = 0;
             int different = 0, shown = 0;
+            std::uint8_t noted = 0;
             for (int row = 0; row < plan.rows(); ++row) {
                 for (int column = 0; column < plan.columns(); ++column) {
                     std::vector<PatchView> merged, views;
@@ -86,7 +87,7 @@ TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
                     for (WarpPatch const& patch : each) {
                         if (patch.box.left < block.right && patch.box.right > block.left &&
                             patch.box.top < block.bottom && patch.box.bottom > block.top) {
-                            views.push_back({&patch, splats.data()});
+                            views.push_back({&patch, splats.data(), &noted});
                         }
                     }
                     entries += views.size();
