@@ -79,7 +79,7 @@ public:
     int side() const { return framelet_side << pixel_depth_; }
 
     /// Side of a tile in pixels (may be 4 for the finest).
-    int tile_side(Tile tile) const { return (framelet_side << pixel_depth_) >> tile.depth(); }
+    int tile_side(Tile tile) const { return side() >> tile.depth(); }
     /// Distance between neighbouring samples, pixels: 8 for the coarsest tiles, 1/4 for the finest.
     float sample_spacing(Tile tile) const {
         return static_cast<float>(tile_side(tile)) / static_cast<float>(framelet_side);

@@ -9,9 +9,7 @@
 
 #ifdef __AVX2__
 #include <immintrin.h>
-#endif
-
-#ifndef __AVX2__
+#else
 // Vectors wider than the processor's own are passed within the project only, all of which is compiled alike.
 #pragma GCC diagnostic ignored "-Wpsabi"
 #endif

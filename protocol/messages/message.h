@@ -141,7 +141,7 @@ struct EncodedBatch {
     std::uint64_t number = 0;
     std::optional<BatchMoment> moment = BatchMoment{}; ///< none: that of the batch before
     std::vector<Tile> tiles;
-    Bytes payload;
+    Bytes payload; ///< the samples, as `encoding` says
     SampleEncoding encoding = SampleEncoding::exact;
     Bytes shapes{}; ///< those of all framelets; empty: the viewer has no use for them
     Bytes tracks{}; ///< empty: nothing moves but as the viewer knows

@@ -17,7 +17,8 @@ namespace framelet {
 /// sides.
 class PlaneModel {
 public:
-    /// Codes QP and prediction of the next framelet: writes them or reads them, as everything here.
+    /// Codes QP and prediction of the next framelet: writes them or reads them, as everything here. ProtocolError where
+    /// the kind of prediction that is read is none.
     template <class Coder>
     void code_head(Coder& coder, bool may_be_predicted, std::uint8_t& qp, PredictionKind& kind, MotionVector& vector);
 

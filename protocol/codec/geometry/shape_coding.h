@@ -31,6 +31,7 @@ LayerCode continued(CodedLayer const& layer, UnitCode unit, TilePosition const& 
 /// sides.
 class ShapeModel {
 public:
+    /// Writes a shape, each sample of which is on one of its layers or one of its outliers (FRAMELET_CHECK).
     void write(RangeWriter& writer, TilePosition const& position, FrameletShape const& shape);
     /// Reads a shape. ProtocolError where what is read is none.
     void read(RangeReader& reader, TilePosition const& position, FrameletShape& shape);
