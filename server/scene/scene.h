@@ -39,8 +39,6 @@ struct TextureUse {
     Vec2 offset{0, 0}; ///< KHR_texture_transform, see `transform_uv`
     Vec2 scale{1, 1};
     float rotation = 0; ///< radians, counter-clockwise in the picture
-
-    bool transforms() const { return offset != Vec2(0) || scale != Vec2(1) || rotation != 0; }
 };
 
 /// KHR_texture_transform: uv' = offset + rotation * (scale * uv), as the extension's matrices say.
@@ -175,7 +173,6 @@ struct SceneCamera {
     Index node = none;
     Projection projection = Projection::perspective;
     float vertical_extent = 0.8f; ///< as in Camera
-    float aspect_ratio = 0; ///< width / height that the file was made for; 0 where it does not say
 };
 
 struct Scene {

@@ -16,9 +16,6 @@ inline bool is_finite(Vec3 const& v) {
 inline bool is_finite(Vec4 const& v) {
     return is_finite(Vec3(v)) && std::isfinite(v.w);
 }
-inline bool is_finite(Mat4 const& m) {
-    return is_finite(m[0]) && is_finite(m[1]) && is_finite(m[2]) && is_finite(m[3]);
-}
 
 /// Unit vector along `v`, or `otherwise` where `v` has no direction. Works for any length a float can hold.
 inline Vec3 unit_or(Vec3 v, Vec3 const& otherwise) {

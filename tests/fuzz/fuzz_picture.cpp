@@ -25,7 +25,7 @@ std::shared_ptr<Picture const> read_texture(EncodedImage const& image) {
     ImportBudget budget(memory_bytes);
     std::vector<std::string> warnings;
     try {
-        auto const pictures = load_images(std::span(&image, 1), budget, warnings, {});
+        auto const pictures = load_images(std::span(&image, 1), budget, warnings, [](std::string_view, double) {});
         FRAMELET_CHECK(pictures.size() == 1 && warnings.size() == (pictures[0] ? 0 : 1));
         FRAMELET_CHECK(!pictures[0] || pictures[0]->rgba.size() <= memory_bytes);
         return pictures[0];

@@ -220,7 +220,8 @@ protected:
         auto const file = folder.write("a.glb", text);
         expected = import_scene(file);
         ImportBudget budget(ImportOptions{}.memory_bytes);
-        found = import_assimp(file, SceneFolder(file, false), budget, [](std::string_view, double) {});
+        found = import_assimp(
+            file, SceneFolder(file, false), budget, [](std::string_view, double) {}, false);
         finish_scene(found, budget, [](std::string_view, double) {});
     }
 

@@ -68,7 +68,7 @@ TEST(SceneCameraPose, IgnoresScaleAndMirroring) {
     Scene scene;
     scene.nodes.resize(1);
     scene.nodes[0].local = {{1, 2, 3}, glm::angleAxis(1.5707963f, Vec3(0, 1, 0)), {-2, 3, 0.5f}};
-    scene.cameras.push_back({"c", 0, Projection::perspective, 0.6f, 0});
+    scene.cameras.push_back({"c", 0, Projection::perspective, 0.6f});
     Camera const camera = scene_camera(scene, evaluate_pose(scene, {}, 0), 0);
     EXPECT_TRUE(is_valid(camera));
     EXPECT_EQ(camera.position, Vec3(1, 2, 3));

@@ -1,7 +1,6 @@
 #include "server/render/light/environment_filter.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <numbers>
 

@@ -18,7 +18,6 @@ public:
     /// Makes the map of `values`: side * side, rows from v = 0, texel centres at (i + 0.5) / side.
     OctahedralMap(int side, std::vector<Vec3> const& values);
 
-    int side() const { return side_; }
     Vec3 sample(Vec3 const& direction) const { return sample_at(octahedral_from_direction(direction)); }
     Vec3 sample_at(Vec2 point) const;
 

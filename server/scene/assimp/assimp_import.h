@@ -15,7 +15,7 @@ namespace framelet {
 /// Unless the file `is_checked` (import_check.h), memory is limited for the whole process while Assimp reads: not where
 /// anybody is served.
 Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                    Progress const& progress, bool is_checked = false);
+                    Progress const& progress, bool is_checked);
 
 /// The endings of files that Assimp reads, in lower case and with their dots.
 std::set<std::string> assimp_endings();

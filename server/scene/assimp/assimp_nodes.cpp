@@ -139,7 +139,6 @@ struct Builder {
             SceneCamera camera;
             camera.name = source.mName.C_Str();
             camera.node = add_node(camera.name, find(source.mName), local);
-            camera.aspect_ratio = source.mAspect;
             float const aspect = source.mAspect > 0 ? source.mAspect : 16.0f / 9.0f;
             if (source.mOrthographicWidth > 0) {
                 camera.projection = Projection::orthographic;

@@ -1,6 +1,5 @@
 #include "server/scene/assimp/polygon.h"
 
-#include <cmath>
 #include <numeric>
 
 #include <glm/geometric.hpp>

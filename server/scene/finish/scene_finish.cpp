@@ -131,7 +131,6 @@ void finish_cameras(Scene& scene) {
             scene.warnings.push_back("camera '" + camera.name + "' has an unusable field of view; 0.8 is used");
             camera.vertical_extent = 0.8f;
         }
-        camera.aspect_ratio = clamped(camera.aspect_ratio, 0, 1e4f, 0);
     }
 }
 

@@ -1,5 +1,3 @@
-#include <algorithm>
-
 #include <tiny_gltf.h>
 
 #include "common/error.h"

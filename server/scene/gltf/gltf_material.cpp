@@ -1,5 +1,3 @@
-#include <array>
-
 #include "server/scene/gltf/gltf_parts.h"
 #include "server/scene/gltf/gltf_value.h"
 

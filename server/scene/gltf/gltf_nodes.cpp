@@ -69,10 +69,8 @@ void add_camera(tinygltf::Model const& model, int index, Index node, Scene& scen
     if (from.type == "orthographic") {
         camera.projection = Projection::orthographic;
         camera.vertical_extent = static_cast<float>(2 * std::abs(from.orthographic.ymag));
-        camera.aspect_ratio = static_cast<float>(std::abs(from.orthographic.xmag / from.orthographic.ymag));
     } else {
         camera.vertical_extent = static_cast<float>(from.perspective.yfov);
-        camera.aspect_ratio = static_cast<float>(from.perspective.aspectRatio);
     }
     scene.cameras.push_back(camera);
 }
@@ -122,7 +120,7 @@ void import_skins(tinygltf::Model const& model, GltfAccessors const& accessors, 
 GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const& accessors, Scene& scene) {
     GltfMapping mapping;
     mapping.node.assign(model.nodes.size(), none);
-    mapping.mesh.assign(model.meshes.size(), none);
+    std::vector<Index> mesh_in_scene(model.meshes.size(), none);
     struct Pending {
         int node;
         Index parent;
@@ -145,11 +143,11 @@ GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const&
         Node node = make_node(from, next.parent);
         if (from.mesh >= 0) {
             std::size_t const mesh = checked(from.mesh, model.meshes.size(), "mesh");
-            if (mapping.mesh[mesh] == none) {
-                mapping.mesh[mesh] = static_cast<Index>(mapping.used_meshes.size());
+            if (mesh_in_scene[mesh] == none) {
+                mesh_in_scene[mesh] = static_cast<Index>(mapping.used_meshes.size());
                 mapping.used_meshes.push_back(mesh);
             }
-            node.mesh = mapping.mesh[mesh];
+            node.mesh = mesh_in_scene[mesh];
             node.skin = from.skin < 0 ? none : static_cast<Index>(checked(from.skin, model.skins.size(), "skin"));
         }
         scene.nodes.push_back(std::move(node));

@@ -28,10 +28,9 @@ Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accesso
 void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
                        ImportBudget& budget);
 
-/// Indices in the scene of the file's nodes and meshes; `none` for those that the scene does not use.
+/// What of the file is where in the scene.
 struct GltfMapping {
-    std::vector<Index> node;
-    std::vector<Index> mesh;
+    std::vector<Index> node; ///< the scene's index of each of the file's nodes; `none` where the scene does not use it
     std::vector<std::size_t> used_meshes; ///< the file's indices, in the scene's order
 };
 

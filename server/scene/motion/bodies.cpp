@@ -5,8 +5,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "common/error.h"
-
 namespace framelet {
 namespace {
 
@@ -71,8 +69,7 @@ bool SceneBodies::any_flows() const {
     return std::ranges::find(flows, true) != flows.end();
 }
 
-SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::size_t most) {
-    FRAMELET_CHECK(most <= most_bodies);
+SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips) {
     std::size_t const count = scene.nodes.size();
     NodeMotion const motion = node_motion(scene, clips);
     std::vector<bool> const moving = moving_nodes(scene, clips);
@@ -104,7 +101,7 @@ SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::s
             bodies.flows[i] = true;
         } else if (frame[i] != none) {
             auto const of = static_cast<std::size_t>(frame[i]);
-            if (number[of] == static_body && rigid_above[of] && bodies.frames.size() <= most) {
+            if (number[of] == static_body && rigid_above[of] && bodies.frames.size() <= most_bodies) {
                 number[of] = static_cast<BodyNumber>(bodies.frames.size());
                 bodies.frames.push_back(frame[i]);
             }

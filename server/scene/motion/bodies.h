@@ -30,8 +30,8 @@ struct SceneBodies {
 inline constexpr std::size_t most_bodies = 65535;
 
 /// Numbers the bodies in the order of their nodes; only those that draw something get a number, and no more than
-/// `most` of them.
-SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips, std::size_t most = most_bodies);
+/// `most_bodies` of them.
+SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips);
 
 /// Pose of the body in this pose of its scene. It is finite; its rotation has unit length.
 BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body);

@@ -33,7 +33,7 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
     SizeCheck const reserve = [&](int width, int height) {
         budget.reserve(static_cast<std::uint64_t>(width) * static_cast<std::uint64_t>(height), 4);
     };
-    if (progress && !images.empty()) {
+    if (!images.empty()) {
         progress("images", 0);
     }
     auto const read = [&](std::size_t i) {
@@ -66,9 +66,7 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
         read(i);
         std::lock_guard const lock(report);
         ++done;
-        if (progress) {
-            progress("images", static_cast<double>(done) / static_cast<double>(images.size()));
-        }
+        progress("images", static_cast<double>(done) / static_cast<double>(images.size()));
     });
     for (std::string& problem : problems) {
         if (!problem.empty()) {
