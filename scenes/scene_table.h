@@ -1,4 +1,4 @@
-// The one list of all scenes: name, length, what is hard in it, and the parameters it is made from.
+// The one list of all scenes: name, length, and the parameters it is made from.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,6 @@ namespace framelet {
 struct SceneEntry {
     std::string name; ///< the file is NAME.glb
     double duration; ///< seconds, of the animation's loop
-    std::string hard; ///< what makes it hard, one line
     bool committed; ///< false: too large for the repository, made while building
     std::function<GltfDocument()> make;
 };

@@ -12,12 +12,12 @@ GltfTrack line_track(int node, D3 from, D3 to, double duration) {
     return {{node}, GltfPath::translation, false, {0, duration}, {D4(from, 0), D4(to, 0)}};
 }
 
-GltfTrack spin_track(std::vector<int> nodes, D3 axis, double angle, double duration, DQuat start) {
+GltfTrack spin_track(std::vector<int> nodes, D3 axis, double angle, double duration) {
     GltfTrack track{std::move(nodes), GltfPath::rotation, false, {}, {}};
     int const keys = static_cast<int>(std::ceil(std::abs(angle) / (pi / 2) - 1e-9));
     for (int key = 0; key <= keys; ++key) {
         track.times.push_back(duration * key / keys);
-        track.values.push_back(as_key(rotation_about(axis, angle * key / keys) * start));
+        track.values.push_back(as_key(rotation_about(axis, angle * key / keys)));
     }
     return track;
 }

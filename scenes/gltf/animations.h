@@ -9,9 +9,8 @@ namespace framelet {
 
 /// A straight line at constant speed, from time 0 to `duration`.
 GltfTrack line_track(int node, D3 from, D3 to, double duration);
-/// Turns nodes about a unit axis at constant speed, by `angle` radians in all, keyed at least every 90 degrees, on top
-/// of the rotation `start`.
-GltfTrack spin_track(std::vector<int> nodes, D3 axis, double angle, double duration, DQuat start = {1, 0, 0, 0});
+/// Turns nodes about a unit axis at constant speed, by `angle` radians in all, keyed at least every 90 degrees.
+GltfTrack spin_track(std::vector<int> nodes, D3 axis, double angle, double duration);
 /// A track of `keys` + 1 keys, evenly spaced over the duration.
 GltfTrack translation_track(int node, double duration, int keys, std::function<D3(double seconds)> const& at);
 GltfTrack rotation_track(int node, double duration, int keys, std::function<DQuat(double seconds)> const& at);

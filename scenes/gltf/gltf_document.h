@@ -1,10 +1,8 @@
 // The content of a glTF 2.0 file as values: the scenes fill a GltfDocument, gltf_writer puts it into a file.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "scenes/mesh/geometry.h"
@@ -59,7 +57,7 @@ struct GltfLight {
     double intensity = 1;
 };
 
-enum class GltfPath : std::uint8_t { translation, rotation, scale };
+enum class GltfPath : std::uint8_t { translation, rotation };
 
 /// Keys of one property of one or more nodes (which then share the keys). Rotations are x, y, z, w.
 struct GltfTrack {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <map>
 #include <set>
@@ -227,9 +226,7 @@ Json write_animation(Binary& binary, std::vector<GltfTrack> const& tracks) {
         samplers.push_back({{"input", binary.add_floats(times, 1, 0, true)},
                             {"output", binary.add_floats(values, width, 0, false)},
                             {"interpolation", track.step ? "STEP" : "LINEAR"}});
-        char const* const path = track.path == GltfPath::translation ? "translation"
-                                 : track.path == GltfPath::rotation  ? "rotation"
-                                                                     : "scale";
+        char const* const path = track.path == GltfPath::rotation ? "rotation" : "translation";
         for (int const node : track.nodes) {
             channels.push_back({{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
         }

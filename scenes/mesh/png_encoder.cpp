@@ -1,7 +1,5 @@
 #include "scenes/mesh/png_encoder.h"
 
-#include <memory>
-
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
 

@@ -1,7 +1,6 @@
 #include "scenes/things/landscape.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "scenes/mesh/mesh_builder.h"
@@ -219,8 +218,8 @@ int add_surroundings(GltfDocument& document) {
     return document.add_node({.name = "surroundings", .place = {{0, -0.3, 0}}, .mesh = mesh});
 }
 
-void add_sun(GltfDocument& document, D3 towards_sun, double intensity) {
-    document.lights.push_back({"directional", {1.0, 0.96, 0.88}, intensity});
+void add_sun(GltfDocument& document, D3 towards_sun) {
+    document.lights.push_back({"directional", {1.0, 0.96, 0.88}, pi}); // lux
     document.add_node({.name = "sun",
                        .place = {.rotation = looking_at(towards_sun, {0, 0, 0})},
                        .light = static_cast<int>(document.lights.size()) - 1});

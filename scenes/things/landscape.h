@@ -20,10 +20,10 @@ void add_yard(GltfDocument& document, D3 center, D2 size);
 /// Adds what is far away: a plain, a ring of hills, a sky with clouds up to 50 degrees (the sun shines in from above).
 /// Returns the node of all this, which may ride along with a camera.
 int add_surroundings(GltfDocument& document);
-/// Sunlight that falls along -`towards_sun`. The sun lights a grey of 0.5 to 0.5 * cosine: intensity pi.
-/// It must stand higher than 52 degrees where there is a sky.
-void add_sun(GltfDocument& document, D3 towards_sun, double intensity = pi);
-/// A camera node, looking from `eye` to `target`; vertical field of view in degrees.
+/// Adds sunlight that falls along -`towards_sun`, and by which a grey of 0.5 shows as 0.5 * cosine. The sun must stand
+/// higher than 52 degrees where there is a sky.
+void add_sun(GltfDocument& document, D3 towards_sun);
+/// Adds a camera that looks from `eye` to `target`, both in the space of `parent`, metres. Returns its node.
 int add_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_degrees, int parent = no_index);
 
 } // namespace framelet

@@ -1,6 +1,7 @@
 #include "scenes/things/props.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "scenes/mesh/mesh_builder.h"
