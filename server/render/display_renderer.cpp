@@ -102,7 +102,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
                              Framelet& geometry, DisplayFramelet& display) {
     FRAMELET_CHECK(rays_per_sample == single_ray || rays_per_sample == four_rays);
     if (rays_per_sample == single_ray) {
-        std::uint32_t const segments = render_framelet(scene, rays, plane, tile, 0, scratch);
+        std::uint32_t const segments = render_framelet(scene, rays, plane, tile, scratch);
         display = to_display(scratch, exposure);
         move_geometry(scratch, geometry);
         return segments;
@@ -114,7 +114,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
     geometry.is_supersampled = true;
     std::uint32_t segments = 0;
     for (std::uint32_t quadrant = 0; quadrant < four_rays; ++quadrant) {
-        segments += render_framelet(scene, rays, plane, tile.child(quadrant), 0, scratch);
+        segments += render_framelet(scene, rays, plane, tile.child(quadrant), scratch);
         merge_child(scratch, exposure, will_be_moved, geometry, display);
     }
     return segments;

@@ -17,9 +17,9 @@ namespace framelet {
 void merge_child(Framelet const& child, float exposure, bool will_be_moved, Framelet& geometry,
                  DisplayFramelet& display);
 
-/// Renders one framelet on the calling thread, at the positions of seed 0. `geometry` gets all but the radiance;
-/// `scratch` is overwritten, and its memory is reused. `rays_per_sample`: single_ray, or four_rays, which `merge_child`
-/// merges. Returns how many rays that took, shadow and mirror rays included.
+/// Renders one framelet on the calling thread. `geometry` gets all but the radiance; `scratch` is overwritten, and its
+/// memory is reused. `rays_per_sample`: single_ray, or four_rays, which `merge_child` merges. Returns how many rays
+/// that took, shadow and mirror rays included.
 std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
                              float exposure, int rays_per_sample, bool will_be_moved, Framelet& scratch,
                              Framelet& geometry, DisplayFramelet& display);

@@ -6,7 +6,6 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
-#include "common/mix_bits.h"
 #include "server/render/flush_denormals.h"
 #include "server/render/trace/sample_motion.h"
 #include "server/render/trace/shadow_motion.h"
@@ -19,16 +18,6 @@ namespace {
 /// Mirror reflections of mirror reflections end in the environment.
 constexpr int mirror_bounces = 1;
 
-/// Position of a sample in its cell, [0, 1)^2.
-Vec2 position_in_cell(Seed seed, Tile tile, std::uint32_t sample) {
-    if (seed == 0) {
-        return Vec2(0.5f);
-    }
-    std::uint32_t const x = mix_bits(mix_bits(mix_bits(seed) ^ tile.code) + sample);
-    std::uint32_t const y = mix_bits(x ^ 0x9e3779b9u);
-    return {static_cast<float>(x >> 8) * 0x1p-24f, static_cast<float>(y >> 8) * 0x1p-24f};
-}
-
 Footprint sample_footprint(ViewRays const& view, float spacing) {
     Footprint footprint;
     footprint.width.fill(glm::length(view.origin_dx) * spacing);
@@ -39,7 +28,7 @@ Footprint sample_footprint(ViewRays const& view, float spacing) {
 } // namespace
 
 std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, ImagePlane const& plane, Tile tile,
-                              Seed seed, Framelet& out) {
+                              Framelet& out) {
     FlushDenormals const flush;
     PixelRect const rect = plane.tile_rect(tile);
     Vec2 const corner(rect.left, rect.top);
@@ -54,8 +43,8 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
     for (int first = 0; first < framelet_samples; first += lanes) {
         auto const position = [&](int i) {
             std::uint32_t const sample = static_cast<std::uint32_t>(first + i);
-            Vec2 const cell(morton_x(sample), morton_y(sample));
-            return corner + (cell + position_in_cell(seed, tile, sample)) * spacing;
+            Vec2 const square(morton_x(sample), morton_y(sample));
+            return corner + (square + 0.5f) * spacing;
         };
         RayPacket rays = rays_through(view, position);
         trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
@@ -81,23 +70,19 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
 }
 
 std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
-                               std::span<Tile const> tiles, Seed seed, std::span<Framelet> out) {
+                               std::span<Tile const> tiles, std::span<Framelet> out) {
     FRAMELET_CHECK(tiles.size() == out.size());
     ViewRays const view = make_view_rays(camera, plane.viewport());
     std::atomic<std::uint64_t> segments{0};
     tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
-        segments.fetch_add(render_framelet(scene, view, plane, tiles[i], seed, out[i]), std::memory_order_relaxed);
+        segments.fetch_add(render_framelet(scene, view, plane, tiles[i], out[i]), std::memory_order_relaxed);
     });
     return segments;
 }
 
-namespace {
-
-/// Renders the radiance at `positions`. `spacing(i)`: footprint of position i, pixels. Returns how many rays that took.
-template <class Spacing>
-std::uint64_t render_at(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
-                        Spacing const& spacing, std::span<Vec3> radiance) {
-    FRAMELET_CHECK(positions.size() == radiance.size());
+std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
+                             std::span<float const> spacings, std::span<Vec3> radiance) {
+    FRAMELET_CHECK(positions.size() == radiance.size() && positions.size() == spacings.size());
     float const width = glm::length(view.origin_dx);
     float const slope = glm::length(view.direction_dx);
     std::atomic<std::uint64_t> segments{0};
@@ -110,8 +95,8 @@ std::uint64_t render_at(RenderScene const& scene, ViewRays const& view, std::spa
         auto const of_lane = [&](int i) { return first + std::min(static_cast<std::size_t>(i), count - 1); };
         Footprint footprint;
         for (int i = 0; i < lanes; ++i) {
-            footprint.width[i] = width * spacing(of_lane(i));
-            footprint.slope[i] = slope * spacing(of_lane(i));
+            footprint.width[i] = width * spacings[of_lane(i)];
+            footprint.slope[i] = slope * spacings[of_lane(i)];
         }
         TracedPacket traced{};
         RayPacket rays = rays_through(view, [&](int i) { return positions[of_lane(i)]; });
@@ -122,21 +107,6 @@ std::uint64_t render_at(RenderScene const& scene, ViewRays const& view, std::spa
         segments.fetch_add(traced.segments, std::memory_order_relaxed);
     });
     return segments;
-}
-
-} // namespace
-
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
-                             float spacing, std::span<Vec3> radiance) {
-    return render_at(
-        scene, view, positions, [spacing](std::size_t) { return spacing; }, radiance);
-}
-
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
-                             std::span<float const> spacings, std::span<Vec3> radiance) {
-    FRAMELET_CHECK(positions.size() == spacings.size());
-    return render_at(
-        scene, view, positions, [spacings](std::size_t i) { return spacings[i]; }, radiance);
 }
 
 } // namespace framelet

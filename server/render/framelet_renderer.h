@@ -10,26 +10,20 @@
 
 namespace framelet {
 
-/// Chooses where samples lie in their cells: 0 puts each at its cell's centre; any other seed places each at a point of
-/// its cell hashed from seed, tile and sample.
-using Seed = std::uint32_t;
-
-/// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena.
-/// The result depends on scene, view, tile and seed alone, not on threads or on the other tiles. Returns how many rays
-/// that took, shadow and mirror rays included.
+/// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena. Each
+/// sample is a ray through the middle of its square of the tile. The result depends on scene, view and tile alone, not
+/// on threads or on the other tiles. Returns how many rays that took, shadow and mirror rays included.
 std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, ImagePlane const& plane,
-                               std::span<Tile const> tiles, Seed seed, std::span<Framelet> out);
+                               std::span<Tile const> tiles, std::span<Framelet> out);
 
-/// Renders one framelet on the calling thread: the bare loop that `framelet-bench limits` compares the server with.
+/// Renders one framelet as `render_framelets` does, on the calling thread. `rays` are of the plane's viewport. Returns
+/// how many rays that took.
 std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
-                              Seed seed, Framelet& out);
+                              Framelet& out);
 
-/// Renders scene-linear radiance at any positions of the image plane (pixels), each of a footprint of `spacing` pixels,
-/// into `radiance` (same length). Positions that follow each other are traced together: neighbours are cheaper.
-/// Parallel; returns how many rays that took.
-std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> positions,
-                             float spacing, std::span<Vec3> radiance);
-/// The same with a footprint for each position.
+/// Renders scene-linear radiance at any positions of the image plane (pixels), each of a footprint of its own of
+/// `spacings` (pixels), into `radiance` (all of the same length). Positions that follow each other are traced together:
+/// neighbours are cheaper. Parallel on the calling TBB arena; returns how many rays that took.
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> positions,
                              std::span<float const> spacings, std::span<Vec3> radiance);
 

@@ -62,7 +62,7 @@ Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport 
     Picture picture(viewport.width, viewport.height);
     tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
         Framelet framelet;
-        render_framelet(scene, view, plane, tiles[i], 0, framelet);
+        render_framelet(scene, view, plane, tiles[i], framelet);
         add_pixels(to_display(framelet, exposure), plane, samples_per_side, picture);
     });
     return picture;
@@ -74,7 +74,7 @@ float auto_exposure(RenderScene const& scene, Camera const& camera) {
     ImagePlane const plane(probe);
     std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
     std::vector<Framelet> framelets(tiles.size());
-    render_framelets(scene, camera, plane, tiles, 0, framelets);
+    render_framelets(scene, camera, plane, tiles, framelets);
     std::vector<double> luminances;
     for (Framelet const& framelet : framelets) {
         for (std::size_t i = 0; i < framelet_samples; ++i) {

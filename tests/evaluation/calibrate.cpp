@@ -48,15 +48,17 @@ void calibrate_rendering(BenchScene& scene, ImagePlane const& plane, int rounds,
     }
     std::mt19937 random(1);
     std::shuffle(positions.begin(), positions.end(), random);
+    std::vector<float> const spacings(positions.size(), 1.0f);
     std::vector<Vec3> radiance(positions.size());
     ViewRays const rays = make_view_rays(scene.camera, plane.viewport());
     std::vector<double> coherent, incoherent;
     for (int round = 0; round < rounds; ++round) {
         std::uint64_t segments = 0;
-        double seconds = seconds_of(
-            [&] { segments = render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered); });
+        double seconds =
+            seconds_of([&] { segments = render_framelets(*scene.render_scene, scene.camera, plane, tiles, rendered); });
         coherent.push_back(1e9 * seconds / static_cast<double>(segments));
-        seconds = seconds_of([&] { segments = render_samples(*scene.render_scene, rays, positions, 1, radiance); });
+        seconds =
+            seconds_of([&] { segments = render_samples(*scene.render_scene, rays, positions, spacings, radiance); });
         incoherent.push_back(1e9 * seconds / static_cast<double>(segments));
     }
     costs.coherent_segment = median(coherent);

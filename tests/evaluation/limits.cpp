@@ -103,7 +103,7 @@ double bare_loop_seconds(BenchScene& scene, Viewport viewport, std::vector<Tile>
     return seconds_of([&] {
         tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
             thread_local Framelet framelet;
-            render_framelet(*scene.render_scene, rays, plane, tiles[i], 0, framelet);
+            render_framelet(*scene.render_scene, rays, plane, tiles[i], framelet);
         });
     });
 }

@@ -57,6 +57,7 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
     int const rows = (viewport.height + block - 1) / block;
     tbb::parallel_for(0, rows, [&](int row) {
         std::vector<Vec2> positions(static_cast<std::size_t>(columns * block * block * strata));
+        std::vector<float> const spacings(positions.size(), stratum);
         std::vector<Vec3> radiance(positions.size());
         std::size_t next = 0;
         for (int column = 0; column < columns; ++column) {
@@ -72,7 +73,7 @@ Picture render_reference(BenchScene const& scene, Viewport viewport, int samples
                 }
             }
         }
-        render_samples(*scene.render_scene, rays, positions, stratum, radiance);
+        render_samples(*scene.render_scene, rays, positions, spacings, radiance);
         for (int column = 0; column < columns; ++column) {
             for (int i = 0; i < block * block; ++i) {
                 int const x = column * block + i % block;

@@ -31,7 +31,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
         }
         rendered.resize(plan.tiles.size());
         displayed.resize(rendered.size());
-        render_framelets(*scene.render_scene, scene.camera, ImagePlane(viewport), plan.tiles, 0, rendered);
+        render_framelets(*scene.render_scene, scene.camera, ImagePlane(viewport), plan.tiles, rendered);
         probes.render(*scene.render_scene, scene.camera, viewport, scene.exposure, plan.probes);
         for (std::size_t i = 0; i < rendered.size(); ++i) {
             displayed[i] = to_display(rendered[i], scene.exposure);

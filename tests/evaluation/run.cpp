@@ -201,8 +201,7 @@ double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTa
     for (int i = 0; i < probes; ++i) {
         pose_at(scene, parameters.start + parameters.seconds * i / probes);
         segments +=
-            static_cast<double>(render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, rendered)) /
-            probes;
+            static_cast<double>(render_framelets(*scene.render_scene, scene.camera, plane, tiles, rendered)) / probes;
     }
     double const samples = static_cast<double>(tiles.size() * framelet_samples);
     double const frame =

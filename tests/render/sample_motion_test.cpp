@@ -27,7 +27,7 @@ Framelet render(Scene const& scene, SceneTime time) {
     ready.set_clips(clips);
     ready.set_pose(evaluate_pose(scene, clips, time));
     Framelet framelet;
-    render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, centre, 0, framelet);
+    render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, centre, framelet);
     return framelet;
 }
 
@@ -139,7 +139,7 @@ TEST(SampleMotion, VelocityIsAFunctionOfTimeAlone) {
     Framelet framelet, again;
     auto const render_at = [&](double time, Framelet& out) {
         ready.set_pose(evaluate_pose(scene, clips, time));
-        render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, centre, 0, out);
+        render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, centre, out);
     };
     render_at(1.5, framelet);
     render_at(0.2, again);

@@ -65,7 +65,7 @@ Rendered render(Scene const& scene, bool plays = true) {
     }
     ready.set_pose(evaluate_pose(scene, clips, moment));
     Rendered out;
-    out.segments = render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, tile, 0, out.framelet);
+    out.segments = render_framelet(ready, make_view_rays(camera, plane.viewport()), plane, tile, out.framelet);
     return out;
 }
 

@@ -47,7 +47,7 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
     Tiling const tiling = make_uniform_tiling(plane, plane.pixel_depth());
     Surfaces out{viewport, {}, {}, {}, {}};
     out.framelets.resize(tiling.tiles.size());
-    render_framelets(*scene.render_scene, camera, plane, tiling.tiles, 0, out.framelets);
+    render_framelets(*scene.render_scene, camera, plane, tiling.tiles, out.framelets);
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
     out.inverse_depth.resize(pixels);
     out.body.resize(pixels);

@@ -86,7 +86,7 @@ void observe_time(BenchScene& scene, ImagePlane const& plane, int ago, std::vect
         }
     }
     std::vector<Framelet> framelets(tiles.size());
-    render_framelets(*scene.render_scene, scene.camera, plane, tiles, 0, framelets);
+    render_framelets(*scene.render_scene, scene.camera, plane, tiles, framelets);
     std::size_t const each = tiles.size() / places.size();
     tbb::parallel_for(std::size_t(0), places.size(), [&](std::size_t p) {
         std::vector<float> luma(each * framelet_samples);

@@ -82,7 +82,7 @@ std::uint64_t FrameGrid::render_at(RenderScene const& scene, Camera const& camer
     rays.direction += rays.direction_dx * offset.x + rays.direction_dy * offset.y;
     std::atomic<std::uint64_t> segments{0};
     tbb::parallel_for(std::size_t{0}, tiles_.size(), [&](std::size_t i) {
-        segments.fetch_add(render_framelet(scene, rays, plane_, tiles_[i], 0, out[i]), std::memory_order_relaxed);
+        segments.fetch_add(render_framelet(scene, rays, plane_, tiles_[i], out[i]), std::memory_order_relaxed);
     });
     return segments;
 }

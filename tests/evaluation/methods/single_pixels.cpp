@@ -20,9 +20,10 @@ std::uint64_t render_pixels(StepInput const& input, Viewport viewport, std::vect
     std::vector<Vec2> centres(samples.size());
     std::ranges::transform(samples, centres.begin(),
                            [](PixelSample const& sample) { return Vec2(sample.x, sample.y) + 0.5f; });
+    std::vector<float> const spacings(samples.size(), 1.0f);
     std::vector<Vec3> radiance(samples.size());
     ViewRays const rays = make_view_rays(input.view.camera, viewport);
-    std::uint64_t const segments = render_samples(*input.scene.render_scene, rays, centres, 1, radiance);
+    std::uint64_t const segments = render_samples(*input.scene.render_scene, rays, centres, spacings, radiance);
     for (std::size_t i = 0; i < samples.size(); ++i) {
         Vec3 const shown = tone_map(radiance[i] * input.scene.exposure);
         samples[i].rgb = {srgb_byte_from_linear(shown.r), srgb_byte_from_linear(shown.g),

@@ -83,7 +83,7 @@ void TrueGain::look(BenchScene& scene, SceneTime rendered, SceneTime seen, doubl
 void TrueGain::render(BenchScene const& scene, Level& level) const {
     ViewRays const rays = make_view_rays(scene.camera, plane_.viewport());
     tbb::parallel_for(std::size_t{0}, level.tiles.size(), [&](std::size_t i) {
-        level.segments[i] = render_framelet(*scene.render_scene, rays, plane_, level.tiles[i], 0, level.rendered[i]);
+        level.segments[i] = render_framelet(*scene.render_scene, rays, plane_, level.tiles[i], level.rendered[i]);
         level.displayed[i] = to_display(level.rendered[i], scene.exposure);
     });
 }

@@ -82,7 +82,7 @@ ServerStep TsarServer::produce(StepInput const& input) {
 
     std::vector<Framelet> rendered(tiles.size());
     std::uint64_t const segments =
-        render_framelets(*input.scene.render_scene, input.view.camera, plane_, tiles, 0, rendered);
+        render_framelets(*input.scene.render_scene, input.view.camera, plane_, tiles, rendered);
     ++batch_.number;
     batch_.view = input.view;
     batch_.scene_time = input.time;
