@@ -73,6 +73,13 @@ struct Material {
     TextureUse transmission_texture; ///< R
 };
 
+/// Points at each use of a texture by the material.
+template <class AnyMaterial>
+auto texture_uses(AnyMaterial& m) {
+    return std::array{&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
+                      &m.occlusion_texture,  &m.emissive_texture,           &m.transmission_texture};
+}
+
 /// Offsets added to a primitive's attributes, each times the target's weight. Empty where absent.
 struct MorphTarget {
     std::vector<Vec3> positions, normals, tangents;

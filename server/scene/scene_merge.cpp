@@ -39,9 +39,7 @@ void move_indices(Scene& scene, Scene const& before) {
         move_by(texture.image, before.images.size());
     }
     for (Material& material : scene.materials) {
-        for (TextureUse* const use :
-             {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-              &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture}) {
+        for (TextureUse* const use : texture_uses(material)) {
             move_by(use->texture, before.textures.size());
         }
     }

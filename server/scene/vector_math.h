@@ -31,6 +31,12 @@ inline Vec3 unit_or(Vec3 v, Vec3 const& otherwise) {
     return glm::normalize(v);
 }
 
+/// The quaternion with unit length, or no rotation where it has no length.
+inline Quat unit_rotation(Quat const& q) {
+    float const length = glm::length(q);
+    return length > 0 ? q / length : Quat(1, 0, 0, 0);
+}
+
 /// Some unit vector at right angles to the unit vector `n`.
 inline Vec3 any_perpendicular(Vec3 const& n) {
     Vec3 const axis = std::abs(n.x) < 0.7f ? Vec3(1, 0, 0) : Vec3(0, 1, 0);

@@ -26,10 +26,15 @@ inline std::string named(char const* kind, std::size_t index, std::string const&
     return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
 }
 
+/// True where the number is finite, and at most `max_coordinate` without its sign.
 inline bool in_range(float value) {
     return std::abs(value) <= max_coordinate;
 }
+inline bool in_range(Vec3 const& v) {
+    return in_range(v.x) && in_range(v.y) && in_range(v.z);
+}
 
+/// The nearest number to `value` within [low, high]; `otherwise` where `value` is not finite.
 inline float clamped(float value, float low, float high, float otherwise) {
     return std::isfinite(value) ? std::clamp(value, low, high) : otherwise;
 }

@@ -2,6 +2,7 @@
 
 #include "common/error.h"
 #include "server/scene/finish/finish_parts.h"
+#include "server/scene/vector_math.h"
 
 namespace framelet {
 namespace {
@@ -40,35 +41,29 @@ void finish_transforms(Scene& scene) {
         FRAMELET_CHECK(node.mesh >= none && node.mesh < static_cast<Index>(scene.meshes.size()));
         Transform& local = node.local;
         Quat const& q = local.rotation;
-        bool ok = in_range(q.x) && in_range(q.y) && in_range(q.z) && in_range(q.w);
-        for (int c = 0; c < 3; ++c) {
-            ok = ok && in_range(local.translation[c]) && in_range(local.scale[c]);
-        }
+        bool ok = in_range(q.x) && in_range(q.y) && in_range(q.z) && in_range(q.w) && in_range(local.translation) &&
+                  in_range(local.scale);
         if (node.matrix) {
             for (int column = 0; column < 4; ++column) {
                 Vec4& v = (*node.matrix)[column];
                 v.w = column == 3 ? 1.0f : 0.0f;
-                ok = ok && in_range(v.x) && in_range(v.y) && in_range(v.z);
+                ok = ok && in_range(Vec3(v));
             }
         }
         if (!ok) {
             throw InputError(named("node", i, node.name) + " has a transform that is not a number or out of range");
         }
-        float const length = glm::length(local.rotation);
-        local.rotation = length > 0 ? local.rotation / length : Quat(1, 0, 0, 0);
+        local.rotation = unit_rotation(local.rotation);
     }
 }
 
 /// Takes skins off that have joints outside the scene, or whose mesh has no influences. Throws InputError where an
 /// influence names a joint that its skin lacks, or an inverse bind matrix is not a number.
 void finish_skins(Scene& scene) {
-    std::vector<bool> usable;
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
         Skin& skin = scene.skins[i];
         FRAMELET_CHECK(skin.joints.size() == skin.inverse_bind_matrices.size());
-        bool const complete = std::find(skin.joints.begin(), skin.joints.end(), none) == skin.joints.end();
-        usable.push_back(complete && !skin.joints.empty());
-        if (!complete) {
+        if (std::ranges::find(skin.joints, none) != skin.joints.end()) {
             scene.warnings.push_back(named("skin", i, "") + " has joints outside the scene; shown without it");
             skin = {};
         }
@@ -88,18 +83,13 @@ void finish_skins(Scene& scene) {
         }
         std::size_t const joints = scene.skins[static_cast<std::size_t>(node.skin)].joints.size();
         Mesh& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
-        bool any = false;
-        bool all = true;
-        for (Primitive const& primitive : mesh.primitives) {
-            any = any || !primitive.influences.empty();
-            all = all && !primitive.influences.empty();
-        }
-        if (!usable[static_cast<std::size_t>(node.skin)] || !any) {
+        bool const any = std::ranges::any_of(mesh.primitives, [](Primitive const& p) { return !p.influences.empty(); });
+        if (joints == 0 || !any) {
             node.skin = none;
             continue;
         }
         for (Primitive& primitive : mesh.primitives) {
-            if (!all && primitive.influences.empty()) { // scene.h promises influences where a node has a skin
+            if (primitive.influences.empty()) { // scene.h promises influences where a node has a skin
                 primitive.influences.assign(primitive.positions.size(), JointInfluence{{}, {1, 0, 0, 0}});
             }
             for (JointInfluence const& influence : primitive.influences) {

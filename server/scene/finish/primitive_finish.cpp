@@ -29,10 +29,6 @@ void check_structure(Primitive const& primitive) {
     }
 }
 
-bool in_range(Vec3 const& v) {
-    return std::abs(v.x) <= max_coordinate && std::abs(v.y) <= max_coordinate && std::abs(v.z) <= max_coordinate;
-}
-
 void check_positions(std::vector<Vec3> const& positions) {
     for (std::size_t i = 0; i < positions.size(); ++i) {
         if (!in_range(positions[i])) {
@@ -48,7 +44,7 @@ std::size_t repair(std::vector<T>& values, T const& otherwise) {
     std::size_t count = 0;
     for (T& value : values) {
         for (int c = 0; c < T::length(); ++c) {
-            if (!(std::abs(value[c]) <= max_coordinate)) {
+            if (!in_range(value[c])) {
                 value = otherwise;
                 ++count;
                 break;
@@ -96,9 +92,7 @@ void complete_tangents(Primitive& primitive, Material const& material) {
 
 /// Texture coordinates that the material's textures ask for but the file does not have are 0.
 void complete_uv(Primitive& primitive, Material const& material) {
-    for (TextureUse const* use :
-         {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-          &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture}) {
+    for (TextureUse const* const use : texture_uses(material)) {
         if (use->texture != none) {
             primitive.uv[static_cast<std::size_t>(use->uv_set)].resize(primitive.positions.size());
         }

@@ -1,6 +1,5 @@
 #include "server/scene/finish/scene_finish.h"
 
-#include <algorithm>
 #include <mutex>
 
 #include <tbb/parallel_for.h>
@@ -46,8 +45,7 @@ void finish_materials(Scene& scene) {
         m.occlusion_strength = clamped(m.occlusion_strength, 0, 1, 1);
         m.transmission = clamped(m.transmission, 0, 1, 0);
         m.alpha_cutoff = clamped(m.alpha_cutoff, 0, max_coordinate, 0.5f);
-        for (TextureUse* use : {&m.base_color_texture, &m.metallic_roughness_texture, &m.normal_texture,
-                                &m.occlusion_texture, &m.emissive_texture, &m.transmission_texture}) {
+        for (TextureUse* const use : texture_uses(m)) {
             for (float* value : {&use->offset.x, &use->offset.y, &use->rotation}) {
                 *value = clamped(*value, -max_coordinate, max_coordinate, 0);
             }

@@ -18,12 +18,6 @@ struct Layout {
     std::size_t element_size() const { return components * component_size; }
 };
 
-/// `count` elements of a buffer view from `offset` on, checked to lie inside.
-struct Elements {
-    std::byte const* first = nullptr;
-    std::size_t stride = 0;
-};
-
 [[noreturn]] void fail(std::string const& what, std::string const& why) {
     throw InputError(what + " " + why);
 }
@@ -32,8 +26,9 @@ std::string accessor_name(int index) {
     return "accessor " + std::to_string(index);
 }
 
-Elements elements_of(std::span<std::byte const> view, std::uint64_t offset, std::uint64_t count, Layout const& layout,
-                     std::string const& what) {
+/// The first of `count` elements of a buffer view from byte `offset` on; all of them are checked to lie inside.
+std::byte const* elements_of(std::span<std::byte const> view, std::uint64_t offset, std::uint64_t count,
+                             Layout const& layout, std::string const& what) {
     std::uint64_t const size = view.size();
     std::uint64_t const element = layout.element_size();
     bool const fits = count == 0 || (layout.stride >= element && offset <= size && element <= size - offset &&
@@ -42,7 +37,7 @@ Elements elements_of(std::span<std::byte const> view, std::uint64_t offset, std:
         fail(what, "reaches beyond its buffer view: " + std::to_string(count) + " elements from byte " +
                        std::to_string(offset) + " of " + std::to_string(size));
     }
-    return {view.data() + (count == 0 ? 0 : offset), layout.stride};
+    return view.data() + (count == 0 ? 0 : offset);
 }
 
 template <class T>
@@ -121,9 +116,9 @@ void for_each_element(GltfAccessors const& accessors, tinygltf::Model const& mod
         std::span<std::byte const> const view = accessors.view(accessor.bufferView);
         std::size_t const stride = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
         layout.stride = stride ? stride : layout.element_size();
-        Elements const elements = elements_of(view, accessor.byteOffset, accessor.count, layout, what);
+        std::byte const* const first = elements_of(view, accessor.byteOffset, accessor.count, layout, what);
         for (std::size_t i = 0; i < accessor.count; ++i) {
-            visit(i, elements.first + i * elements.stride);
+            visit(i, first + i * layout.stride);
         }
     }
     if (accessor.sparse.isSparse && accessor.sparse.count > 0) {
@@ -134,20 +129,20 @@ void for_each_element(GltfAccessors const& accessors, tinygltf::Model const& mod
         }
         std::size_t const index_size = component_size(sparse.indices.componentType, what);
         // Negative offsets become huge and are refused like any other that is too large.
-        Elements const indices = elements_of(accessors.view(sparse.indices.bufferView),
-                                             static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
-                                             {1, index_size, index_size}, what + " (sparse indices)");
+        std::byte const* const indices = elements_of(accessors.view(sparse.indices.bufferView),
+                                                     static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
+                                                     {1, index_size, index_size}, what + " (sparse indices)");
         layout.stride = layout.element_size();
-        Elements const values =
+        std::byte const* const values =
             elements_of(accessors.view(sparse.values.bufferView), static_cast<std::uint64_t>(sparse.values.byteOffset),
                         count, layout, what + " (sparse values)");
         for (std::size_t i = 0; i < count; ++i) {
-            std::uint32_t const index = load_unsigned(sparse.indices.componentType, indices.first + i * indices.stride);
+            std::uint32_t const index = load_unsigned(sparse.indices.componentType, indices + i * index_size);
             if (index >= accessor.count) {
                 fail(what, "has the sparse index " + std::to_string(index) + ", but only " +
                                std::to_string(accessor.count) + " elements");
             }
-            visit(index, values.first + i * values.stride);
+            visit(index, values + i * layout.stride);
         }
     }
 }

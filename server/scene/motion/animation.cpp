@@ -100,9 +100,7 @@ Transform transform_of(Mat4 const& matrix) {
         result.scale.x = -result.scale.x;
         axes[0] = -axes[0];
     }
-    Quat const rotation = glm::quat_cast(axes);
-    float const length = glm::length(rotation);
-    result.rotation = length > 0 ? rotation / length : Quat(1, 0, 0, 0);
+    result.rotation = unit_rotation(glm::quat_cast(axes));
     return result;
 }
 

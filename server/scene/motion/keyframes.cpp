@@ -2,13 +2,13 @@
 
 #include <algorithm>
 
+#include "server/scene/vector_math.h"
+
 namespace framelet {
 namespace {
 
 Quat load_quaternion(float const* xyzw) {
-    Quat const q(xyzw[3], xyzw[0], xyzw[1], xyzw[2]);
-    float const length = glm::length(q);
-    return length > 0 ? q / length : Quat(1, 0, 0, 0);
+    return unit_rotation(Quat(xyzw[3], xyzw[0], xyzw[1], xyzw[2]));
 }
 
 void store_quaternion(Quat const& q, std::span<float> out) {

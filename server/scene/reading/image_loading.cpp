@@ -86,9 +86,7 @@ void drop_missing_images(Scene& scene) {
         new_indices(scene.textures.size(), [&](std::size_t i) { return scene.textures[i].image != none; });
     std::erase_if(scene.textures, [](Texture const& texture) { return texture.image == none; });
     for (Material& material : scene.materials) {
-        for (TextureUse* use :
-             {&material.base_color_texture, &material.metallic_roughness_texture, &material.normal_texture,
-              &material.occlusion_texture, &material.emissive_texture, &material.transmission_texture}) {
+        for (TextureUse* const use : texture_uses(material)) {
             use->texture = use->texture == none ? none : new_texture[static_cast<std::size_t>(use->texture)];
         }
     }
