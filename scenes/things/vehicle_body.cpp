@@ -194,15 +194,13 @@ std::vector<double> cabin_stations() {
 void add_wheel_wells(MeshData& trim) {
     for (double const axle : {front_axle_z, rear_axle_z}) {
         for (double const side : {1.0, -1.0}) {
-            append(trim, [&] {
-                MeshData well = make_surface(20, 1, [&](double u, double v) {
-                    double const angle = radians(-25 + 230 * u) * side + (side < 0 ? pi : 0);
-                    return D3(side * (0.45 + 0.37 * v), wheel_radius + arch_radius * std::sin(angle),
-                              axle + arch_radius * std::cos(angle));
-                });
-                well.uv.clear();
-                return well;
-            }());
+            MeshData well = make_surface(20, 1, [&](double u, double v) {
+                double const angle = radians(-25 + 230 * u) * side + (side < 0 ? pi : 0);
+                return D3(side * (0.45 + 0.37 * v), wheel_radius + arch_radius * std::sin(angle),
+                          axle + arch_radius * std::cos(angle));
+            });
+            well.uv.clear();
+            append(trim, well);
         }
     }
     auto const add_block = [&](D3 size, D3 center) {

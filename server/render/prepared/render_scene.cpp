@@ -104,7 +104,7 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
             prepared_->lights.push_back(default_sun());
         }
     }
-    apply_pose();
+    set_pose(pose_); // places everything
     report("preparing light", 1);
 }
 
@@ -162,23 +162,11 @@ void RenderScene::build_anew() {
     std::size_t built = 0;
     for (Placement const& placement : placements_) {
         if (placement.mesh == built) { // meshes were numbered as they were first placed
-            prepared_->bvh.add_mesh(prepared_->meshes[built++], placement.skin || placement.morphs);
+            prepared_->bvh.add_mesh(prepared_->meshes[built++], placement.deforms());
         }
         prepared_->bvh.add_instance(placement.mesh);
     }
     is_built_ = true;
-}
-
-void RenderScene::apply_pose() {
-    for (Placement const& placement : placements_) {
-        if (placement.skin || placement.morphs) {
-            deform_mesh(placement);
-        }
-        set_transform(placement);
-    }
-    prepared_->bvh.commit();
-    update_lights();
-    is_placed_ = true;
 }
 
 void RenderScene::set_transform(Placement const& placement) {
@@ -233,8 +221,7 @@ void RenderScene::set_pose(ScenePose const& pose) {
     }
     std::vector<Placement const*> move, reshape;
     for (Placement const& placement : placements_) {
-        bool const deforms = placement.skin || placement.morphs;
-        if (reshaped(placement, pose) || (!is_placed_ && deforms)) {
+        if (reshaped(placement, pose) || (!is_placed_ && placement.deforms())) {
             reshape.push_back(&placement);
         } else if (moved(placement, pose) || !is_placed_) {
             move.push_back(&placement);

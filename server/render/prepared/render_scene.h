@@ -42,16 +42,17 @@ public:
 private:
     /// A node that draws a mesh.
     struct Placement {
-        std::size_t node;
+        std::size_t node; ///< index in the scene
         std::uint32_t mesh, instance; ///< numbers in the BVH
-        Skin const* skin;
+        Skin const* skin; ///< null: none
         bool morphs;
         std::size_t deformed; ///< index into `deformed_`, where it deforms
+
+        bool deforms() const { return skin != nullptr || morphs; }
     };
     using MeshVertices = std::vector<DeformedVertices>; ///< one for each primitive
 
     void add_meshes(Progress const& progress);
-    void apply_pose();
     void set_transform(Placement const& placement);
     void build_anew();
     void deform_mesh(Placement const& placement);

@@ -111,7 +111,7 @@ std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, Lob
         }
         shadow.direction = arriving.to_light;
         for (int i = 0; i < lanes; ++i) {
-            shadow.far[i] = arriving.distance[i] * 0.999f; // the lamp's own surface casts no shadow
+            shadow.far[i] = arriving.distance[i] * shadow_ray_share;
         }
         transmittance.fill(Vec3(1));
         segments += static_cast<std::uint32_t>(std::popcount(reached));

@@ -11,6 +11,9 @@ namespace framelet {
 
 inline constexpr std::uint32_t no_light = ~0u;
 
+/// Shadow rays end after this share of the way to a light: the lamp's own surface casts no shadow.
+inline constexpr float shadow_ray_share = 0.999f;
+
 struct ShadedPacket {
     LaneVec3 radiance; ///< of the surface, already weighed by its alpha
     LaneVec3 passed; ///< share of what lies behind that is seen through it; set only where the scene is see-through

@@ -51,7 +51,7 @@ void aim(PreparedScene const& scene, TracedPacket const& traced, LostLights& out
             to_light = path / out.distance[i];
         }
         out.rays.direction.set(i, to_light);
-        out.rays.far[i] = out.distance[i] * 0.999f;
+        out.rays.far[i] = out.distance[i] * shadow_ray_share;
     });
 }
 
