@@ -17,19 +17,19 @@ GltfDocument make_windmill_scene(WindmillParameters const& parameters);
 
 /// A detailed sphere turns about its tilted axis while it goes round an ellipse on the floor.
 struct GlobeParameters {
-    double duration = 6;
-    int turns = 3;
-    double radius = 1.1;
+    double duration = 6; ///< seconds
+    int turns = 3; ///< within `duration`
+    double radius = 1.1; ///< metres
     D2 travel{1.9, 1.2}; ///< half axes of the ellipse, metres
 };
 GltfDocument make_globe_scene(GlobeParameters const& parameters);
 
 /// A million triangles whose shading changes from one to the next; the camera flies round above them.
 struct TerrainParameters {
-    double duration = 16;
+    double duration = 16; ///< seconds
     int columns = 710, rows = 710; ///< two triangles a cell
     double cell = 0.28; ///< metres
-    double flight_radius = 62, flight_height = 50;
+    double flight_radius = 62, flight_height = 50; ///< metres
 };
 GltfDocument make_terrain_scene(TerrainParameters const& parameters);
 
@@ -42,7 +42,7 @@ GltfDocument make_stop_scene(StopParameters const& parameters);
 /// A garage by the light of a lamp with a bad contact. glTF cannot animate a light's strength: the lamp's node jumps
 /// to the other side of the ceiling and back.
 struct FlickerParameters {
-    double duration = 4;
+    double duration = 4; ///< seconds
     std::vector<bool> lit; ///< equal intervals
     double lamp_candela = 34, other_candela = 2.5;
 };
@@ -50,9 +50,9 @@ GltfDocument make_flicker_scene(FlickerParameters const& parameters);
 
 /// Nothing moves, but the camera is at another place every so often.
 struct TeleportParameters {
-    double duration = 6;
+    double duration = 6; ///< seconds
     struct View {
-        D3 eye, target;
+        D3 eye, target; ///< world, metres
     };
     std::vector<View> views; ///< equal intervals
 };
@@ -60,16 +60,17 @@ GltfDocument make_teleport_scene(TeleportParameters const& parameters);
 
 /// Trees of alpha-masked twigs, most of them smaller than a pixel; they sway, the camera drifts.
 struct FoliageParameters {
-    double duration = 8;
+    double duration = 8; ///< seconds
     int trees = 44, twigs = 520; ///< twigs a crown
-    double sway_degrees = 1.6, drift = 1.2; ///< metres to either side
+    double sway_degrees = 1.6;
+    double drift = 1.2; ///< of the camera: metres to either side
 };
 GltfDocument make_foliage_scene(FoliageParameters const& parameters);
 
 /// The same things turn on both sides of a screen; on the right everything is black as soot.
 struct DimParameters {
-    double duration = 4;
-    int turns = 3;
+    double duration = 4; ///< seconds
+    int turns = 3; ///< within `duration`
     double soot = 0.07; ///< colours there, relative to the left side
 };
 GltfDocument make_dim_scene(DimParameters const& parameters);

@@ -8,10 +8,10 @@ namespace framelet {
 
 /// A car on the straight road: at constant speed along +Z (negative speed: facing and driving along -Z).
 struct Drive {
-    double lane_x = near_lane_x;
+    double lane_x = near_lane_x; ///< metres
     double start_z = 0; ///< metres, at time 0
     double speed = 24; ///< metres a second
-    D3 paint{0.55, 0.02, 0.02};
+    D3 paint{0.55, 0.02, 0.02}; ///< linear
 };
 
 enum class CameraPath {
@@ -24,7 +24,7 @@ struct VehicleShot {
     double duration = 5; ///< seconds
     std::vector<Drive> cars{};
     CameraPath camera = CameraPath::fixed;
-    D3 eye{0}, target{0};
+    D3 eye{0}, target{0}; ///< metres, in the frame that `camera` says
     double vertical_fov = 40; ///< degrees
     int first_stretch = -2, last_stretch = 2; ///< of road, landscape.h
     bool yard = false; ///< a paved yard with a hedge beside the road

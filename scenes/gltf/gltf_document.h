@@ -53,8 +53,8 @@ struct GltfCamera {
 /// A light as in KHR_lights_punctual; it shines along its node's -Z.
 struct GltfLight {
     std::string type; ///< "directional", "point"
-    D3 color{1, 1, 1};
-    double intensity = 1;
+    D3 color{1, 1, 1}; ///< linear
+    double intensity = 1; ///< candela for point, lux for directional
 };
 
 enum class GltfPath : std::uint8_t { translation, rotation };

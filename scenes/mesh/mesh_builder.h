@@ -24,7 +24,7 @@ MeshData make_cone(double radius, double height, int segments);
 /// The curve (radius, height), turned about the Y axis; outward to the right of its direction of travel, so that a
 /// curve that climbs is seen from outside. Corners sharper than 40 degrees stay sharp.
 MeshData make_lathe(std::span<D2 const> curve, int segments);
-/// A unit-radius-scaled sphere: texture u runs eastward once round, v from the north pole (+Y) to the south.
+/// A sphere about the origin: texture u runs eastward once round, v from the north pole (+Y) to the south.
 MeshData make_sphere(double radius, int segments);
 /// A torus about the Y axis.
 MeshData make_torus(double major_radius, double minor_radius, int segments, int sides);

@@ -34,7 +34,7 @@ Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport 
                        int samples_per_side);
 
 /// The exposure that shows this view well: 1 where the log-average luminance of what is hit is within what a display
-/// shows, else what brings it to a middle grey. It is taken from a small probe picture and is deterministic.
+/// shows, else what brings it to a middle grey. It is taken from a small picture and is deterministic.
 float auto_exposure(RenderScene const& scene, Camera const& camera);
 
 } // namespace framelet

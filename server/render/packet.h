@@ -70,9 +70,10 @@ LaneMask lanes_where(Test&& test) {
     return mask;
 }
 
-/// Rays can start where no coordinate reaches 1e10 metres: the BVH squares coordinates, in single precision and in the
-/// space of instances that may be scaled down (to `least_instance_scale`).
+/// No element of the inverse of an instance's transform reaches 1 / this.
 inline constexpr float least_instance_scale = 1e-7f;
+/// True where a ray can start: no coordinate reaches 1e10 metres. The BVH squares coordinates, in single precision and
+/// in the space of instances that may be scaled down (to `least_instance_scale`).
 inline bool traceable(Vec3 const& position) {
     constexpr float most = 1e10f;
     return std::abs(position.x) < most && std::abs(position.y) < most && std::abs(position.z) < most;

@@ -1,4 +1,4 @@
-// Renders whole pictures: the reference for what a viewer converges to, and the exposure probe.
+// Renders whole pictures: what a viewer converges to, and a small one by which the exposure is chosen.
 #include <bit>
 #include <cmath>
 #include <numeric>

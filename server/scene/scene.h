@@ -91,8 +91,9 @@ struct JointInfluence {
     std::array<float, 4> weights{};
 };
 
-/// A triangle list of one material. Vertex attributes have one entry a vertex or are empty; normals are never empty
-/// after import (flat ones are made by splitting vertices where a file has none and asks for flat shading).
+/// A triangle list of one material, in the space of the node that has its mesh. Vertex attributes have one entry a
+/// vertex or are empty; normals are never empty after import (where a file has none, vertices are split to make flat
+/// ones).
 struct Primitive {
     std::vector<Vec3> positions;
     std::vector<Vec3> normals;
@@ -129,7 +130,7 @@ struct Transform {
 struct Node {
     std::string name;
     Index parent = none; ///< always smaller than the node's own index
-    Transform local; ///< used unless `matrix` is set
+    Transform local; ///< in the parent's space; used unless `matrix` is set
     std::optional<Mat4> matrix; ///< a local matrix as the file gives it; never animated
     Index mesh = none;
     Index skin = none;
@@ -138,7 +139,7 @@ struct Node {
 
 struct Skin {
     std::vector<Index> joints; ///< nodes
-    std::vector<Mat4> inverse_bind_matrices; ///< one a joint
+    std::vector<Mat4> inverse_bind_matrices; ///< one a joint: from the mesh's space into the joint's
 };
 
 enum class Interpolation : std::uint8_t { step, linear, cubic_spline };
@@ -168,11 +169,11 @@ struct Light {
     std::string name;
     LightType type = LightType::point;
     Index node = none;
-    Vec3 color{1, 1, 1};
+    Vec3 color{1, 1, 1}; ///< linear
     float intensity = 1; ///< candela for point and spot, lux for directional
     float range = 0; ///< metres; 0 is unlimited
-    float inner_cone = 0;
-    float outer_cone = 0.7853982f;
+    float inner_cone = 0; ///< of a spot: radians from its axis within which it is not dimmed
+    float outer_cone = 0.7853982f; ///< radians from its axis at which it ends
 };
 
 struct SceneCamera {
@@ -194,9 +195,9 @@ struct Scene {
     std::vector<Light> lights;
     std::vector<SceneCamera> cameras;
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
-    std::vector<std::filesystem::path>
-        files; ///< that the scene is made of, whether they exist or not; the scene files first
-    std::size_t scene_files = 1; ///< how many those are; the others are what these name
+    /// Files that the scene is made of, whether they exist or not; the scene files first.
+    std::vector<std::filesystem::path> files;
+    std::size_t scene_files = 1; ///< how many of `files` are scene files; the others are what these name
 };
 
 } // namespace framelet

@@ -26,7 +26,8 @@ struct ImportOptions {
     /// before its meshes and pictures are read; for all else `clips_named` does that.
     std::vector<std::string> clips;
     /// Program, framelet-server itself, that tries a file of Assimp's formats before this process reads it. Empty:
-    /// none, and while Assimp reads all of this process has no more memory than that.
+    /// there is none, and while Assimp reads, this process as a whole gets no more memory than what is left of
+    /// `memory_bytes`.
     std::filesystem::path checker;
 };
 

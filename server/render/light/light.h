@@ -9,9 +9,9 @@ namespace framelet {
 struct RenderLight {
     LightType type = LightType::directional;
     Vec3 intensity{0}; ///< candela, or lux for directional lights, per colour
-    Vec3 position{0};
-    Vec3 towards{0, 1, 0}; ///< unit; against the direction in which it shines
-    float inverse_range = 0; ///< 0: unlimited
+    Vec3 position{0}; ///< world
+    Vec3 towards{0, 1, 0}; ///< world, unit; against the direction in which it shines
+    float inverse_range = 0; ///< 1 / metres; 0: unlimited
     Vec3 velocity{0}; ///< of `position`, metres a second
     float cone_scale = 0, cone_offset = 1; ///< spot: (cosine * scale + offset), clamped and squared, weighs the cone
 };
@@ -24,8 +24,8 @@ RenderLight default_sun();
 
 /// Light arriving at sixteen points.
 struct ArrivingLight {
-    LaneVec3 to_light; ///< unit
-    LaneFloats distance; ///< +infinity for directional lights
+    LaneVec3 to_light; ///< world, unit
+    LaneFloats distance; ///< metres; +infinity for directional lights
     LaneFloats irradiance; ///< for `intensity` 1: what falls on the surface, its cosine included
 };
 

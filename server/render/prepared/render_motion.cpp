@@ -10,9 +10,9 @@
 namespace framelet {
 namespace {
 
-/// Seconds to another moment from which velocities at `time` are taken: shortly after it, or before it where a clip
-/// starts over in between.
-double to_other_moment(Scene const& scene, std::span<Index const> clips, SceneTime time) {
+/// Seconds to the other scene time from which velocities at `time` are taken: shortly after it, or before it where a
+/// clip starts over in between.
+double to_other_time(Scene const& scene, std::span<Index const> clips, SceneTime time) {
     constexpr double interval = 1.0 / 120;
     for (Index const clip : clips) {
         double const duration = scene.clips[static_cast<std::size_t>(clip)].duration;
@@ -60,7 +60,7 @@ void RenderScene::update_velocities() {
         return;
     }
     prepared_->throws_moving_shadows = false;
-    double const seconds = to_other_moment(scene_, clips_, pose_.time);
+    double const seconds = to_other_time(scene_, clips_, pose_.time);
     ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
     float const per_second = static_cast<float>(1 / seconds);
     for (Placement const& placement : placements_) {

@@ -5,8 +5,8 @@
 namespace framelet {
 namespace {
 
-/// A hit that a filter may reject, by its lane in the callback.
-struct Candidate {
+/// The hits of one call, all of one geometry, that a filter may reject.
+struct Candidates {
     RTCFilterFunctionNArguments const* args;
 
     Geometry const& geometry() const { return *static_cast<Geometry const*>(args->geometryUserPtr); }
@@ -34,9 +34,9 @@ void keep_hit(RTCFilterFunctionNArguments const* args, unsigned i, int lane, Hit
 } // namespace
 
 void reject_cut_out(RTCFilterFunctionNArguments const* args) {
-    Candidate const candidate{args};
-    Geometry const& geometry = candidate.geometry();
-    candidate.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
+    Candidates const candidates{args};
+    Geometry const& geometry = candidates.geometry();
+    candidates.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
         if (alpha_at(geometry, triangle, u, v) < geometry.material->alpha_cutoff) {
             args->valid[i] = 0;
         }
@@ -85,10 +85,10 @@ void note_moving(RTCFilterFunctionNArguments const* args) {
 }
 
 void attenuate_shadow(RTCFilterFunctionNArguments const* args) {
-    Candidate const candidate{args};
-    Geometry const& geometry = candidate.geometry();
+    Candidates const candidates{args};
+    Geometry const& geometry = candidates.geometry();
     LaneVec3& transmittance = *reinterpret_cast<QueryContext*>(args->context)->transmittance;
-    candidate.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
+    candidates.for_each_valid([&](unsigned i, unsigned triangle, float u, float v) {
         int const lane = static_cast<int>(RTCRayN_id(args->ray, args->N, i));
         Vec3 const through = transmittance.get(lane) * transmittance_at(geometry, triangle, u, v);
         transmittance.set(lane, through);

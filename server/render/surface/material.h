@@ -35,8 +35,8 @@ struct MaterialLibrary {
     std::vector<RenderMaterial> materials; ///< one a scene material, then a default one
 };
 
-/// Builds a mip chain for each use of an image that a material needs. `scene` must outlive nothing: pictures are
-/// shared.
+/// Builds a mip chain for each use of an image that a material needs. The library shares the scene's pictures and needs
+/// the scene no more.
 MaterialLibrary make_materials(Scene const& scene, Progress const& progress = {});
 
 } // namespace framelet

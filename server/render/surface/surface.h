@@ -9,8 +9,8 @@ namespace framelet {
 
 struct SurfacePacket {
     LaneVec3 position; ///< world, from the triangle's corners rather than along the ray: more digits
-    LaneVec3
-        leaving; ///< where rays that leave this surface start: off the triangle, and off the facet of a smooth mesh
+    /// Where rays that leave this surface start, world: off the triangle, and off the facet of a smooth mesh.
+    LaneVec3 leaving;
     LaneVec3 geometric_normal; ///< unit, on the viewer's side
     LaneVec3 normal; ///< unit shading normal, bent so that the viewer is above it
     LaneVec3 view; ///< unit, towards the viewer

@@ -23,8 +23,8 @@ float mean(Vec3 const& v) {
 }
 
 struct Compositing {
-    LaneVec3 throughput;
-    LaneFloats weight; ///< of the heaviest layer so far
+    LaneVec3 throughput; ///< share of the light from behind that is still seen
+    LaneFloats weight; ///< largest share of a lane's light that one surface has had so far, mean of the colours
 };
 
 void add_background(PreparedScene const& scene, RayPacket const& rays, LaneMask missed, Footprint const& footprint,

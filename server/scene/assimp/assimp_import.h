@@ -12,8 +12,8 @@
 
 namespace framelet {
 
-/// Unless the file `is_checked` (import_check.h), memory is limited for the whole process while Assimp reads: not where
-/// anybody is served.
+/// Imports the file. Unless another process has read it before (`is_checked`, import_check.h), memory is limited for
+/// the whole process while Assimp reads, so that nobody may be served meanwhile.
 Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
                     Progress const& progress, bool is_checked);
 

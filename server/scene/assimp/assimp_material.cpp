@@ -37,7 +37,7 @@ struct Images {
         return {};
     }
 
-    /// An embedded texture that is stored as texels.
+    /// Makes a picture of an embedded texture that is stored as texels.
     Picture make_picture(aiTexture const& texture) const {
         budget.reserve(std::uint64_t(texture.mWidth) * texture.mHeight, 4);
         Picture picture(static_cast<int>(texture.mWidth), static_cast<int>(texture.mHeight));
@@ -123,8 +123,8 @@ struct MaterialReader {
         return use;
     }
 
-    /// Roughness whose microfacets have the highlight of a Blinn-Phong exponent: alpha^2 = 2 / (n + 2) (B. Walter et
-    /// al., "Microfacet Models for Refraction through Rough Surfaces", 2007), alpha = roughness^2.
+    /// Roughness whose microfacets have the highlight of a Blinn-Phong exponent: alpha^2 = 2 / (n + 2) ([Walter 2007]),
+    /// alpha = roughness^2.
     float roughness() const {
         Vec3 const specular = color(AI_MATKEY_COLOR_SPECULAR, Vec3(0));
         float const exponent = number(AI_MATKEY_SHININESS, 0);

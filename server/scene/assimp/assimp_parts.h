@@ -1,4 +1,4 @@
-// The pieces of the Assimp importer. Each turns one kind of thing of an aiScene into scene values.
+// The parts of the Assimp importer. Each turns one kind of thing of an aiScene into scene values.
 // In: a complete aiScene, triangulated. Out: parts of a Scene.
 #pragma once
 

@@ -1,4 +1,4 @@
-// The pieces of `finish_scene`. Each checks and completes one kind of thing of a scene.
+// The parts of `finish_scene`. Each checks and completes one kind of thing of a scene.
 // In: a scene whose meshes are finished. Out: the same, as scene.h promises, or an InputError.
 #pragma once
 

@@ -21,7 +21,7 @@ class GltfAccessors {
 public:
     GltfAccessors(tinygltf::Model const& model, ImportBudget& budget) : model_(model), budget_(budget) {}
 
-    /// The bytes of a buffer view.
+    /// The bytes of a buffer view; throws where there is no such view, or the file does not hold all of it.
     std::span<std::byte const> view(int buffer_view) const;
 
     /// Number of elements; throws where there is no such accessor, or the file does not hold so many.

@@ -20,8 +20,9 @@ namespace framelet {
 
 class GltfAccessors;
 
-/// Reads the file and the buffers and image files that it names. Missing images get a warning, all else throws.
-/// External images are in `Image::image`, still encoded. Refuses required extensions that the importer does not know.
+/// Reads the file and the buffers and image files that it names. An image that is missing is left empty; anything
+/// else that is missing is an InputError. External images are in `Image::image`, still encoded. An extension that the
+/// importer does not know is a warning where the file uses it, and an InputError where the file requires it.
 std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
                                            ImportBudget& budget, std::vector<std::string>& warnings,
                                            Progress const& progress);

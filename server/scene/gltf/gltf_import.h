@@ -13,6 +13,8 @@
 
 namespace framelet {
 
+/// Imports the file's default scene. Throws before it reads meshes and pictures where the file lacks a clip of a name
+/// in `needed_clips`.
 Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
                   std::span<std::string const> needed_clips, Progress const& progress);
 

@@ -1,4 +1,4 @@
-// The pieces of the glTF importer. Each turns one kind of thing of a tinygltf model into scene values.
+// The parts of the glTF importer. Each turns one kind of thing of a tinygltf model into scene values.
 // In: the model, checked reading of its accessors. Out: parts of a Scene; InputError where the file is wrong.
 #pragma once
 

@@ -25,7 +25,7 @@ public:
         return !thrown_;
     }
 
-    /// Throws what was thrown, if anything was. To be called once the library has returned.
+    /// Throws what was thrown, if anything was. It is called once the library has returned.
     void rethrow() {
         if (thrown_) {
             std::rethrow_exception(std::exchange(thrown_, nullptr));

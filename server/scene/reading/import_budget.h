@@ -32,8 +32,10 @@ public:
         }
     }
 
+    /// Bytes that can still be reserved.
     std::uint64_t left() const { return bytes_ - std::min(bytes_, taken_.load()); }
 
+    /// The exception that says so; the caller throws it.
     SceneTooLarge too_large() const {
         return SceneTooLarge("it takes more than " + std::to_string(bytes_ >> 20) +
                              " MB of memory once it is decoded; --scene-memory allows more");
