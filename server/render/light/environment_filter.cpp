@@ -58,11 +58,11 @@ float radical_inverse(std::uint32_t bits) {
     return static_cast<float>(bits >> 8) * 0x1p-24f;
 }
 
-/// One direction of a lobe about +Z, its weight, and how wide a level it reads.
+/// One direction of a lobe about +Z.
 struct LobeSample {
-    Vec3 direction;
-    float weight;
-    float solid_angle;
+    Vec3 direction; ///< unit
+    float weight; ///< those of a lobe sum to 1
+    float solid_angle; ///< steradians that it stands for; a wider one reads a coarser level
 };
 
 std::vector<LobeSample> ggx_lobe(float roughness, int count) {

@@ -164,25 +164,25 @@ std::string scene_summary_text(Scene const& scene, std::span<Index const> clips)
                             count_of(s["images"], "image") + " (" + fixed(s["image_bytes"].get<double>() * 1e-6, 1) +
                             " MB decoded)"});
     lines.add(
-        "lights", scene.lights.empty() ? "none: a sun and a sky are put in" : count_of(s["lights"].size(), "light"),
+        "lights", scene.lights.empty() ? "none: a sun and a sky are put in" : counted(s["lights"].size(), "light"),
         each(s["lights"], [](Json const& light) { return name_of(light) + ", " + light["kind"].get<std::string>(); }));
     lines.add(
         "cameras",
-        scene.cameras.empty() ? "none: one that frames the scene is put in" : count_of(s["cameras"].size(), "camera"),
+        scene.cameras.empty() ? "none: one that frames the scene is put in" : counted(s["cameras"].size(), "camera"),
         each(s["cameras"],
              [](Json const& camera) { return name_of(camera) + (camera["moves"].get<bool>() ? ", moves" : ""); }));
-    lines.add("clips", scene.clips.empty() ? "none" : count_of(s["clips"].size(), "clip"),
+    lines.add("clips", scene.clips.empty() ? "none" : counted(s["clips"].size(), "clip"),
               each(s["clips"], [](Json const& clip) {
                   return name_of(clip) + ", " + fixed(clip["seconds"].get<double>(), 2) + " s" +
                          (clip["plays"].get<bool>() ? "" : ", does not play: --clip picks it");
               }));
     lines.add("moving bodies",
-              s["moving_bodies"].empty() ? "none" : count_of(s["moving_bodies"].size(), "body", "bodies"),
+              s["moving_bodies"].empty() ? "none" : counted(s["moving_bodies"].size(), "body", "bodies"),
               each(s["moving_bodies"], name_of));
     if (!s["deforming"].empty()) {
-        lines.add("deforming", count_of(s["deforming"].size(), "node"), each(s["deforming"], name_of));
+        lines.add("deforming", counted(s["deforming"].size(), "node"), each(s["deforming"], name_of));
     }
-    lines.add("passed over", scene.warnings.empty() ? "nothing" : count_of(s["passed_over"].size(), "thing"),
+    lines.add("passed over", scene.warnings.empty() ? "nothing" : counted(s["passed_over"].size(), "thing"),
               each(s["passed_over"], name_of));
     return shown(scene.name) + "\n" + lines.text();
 }
