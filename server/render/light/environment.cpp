@@ -86,9 +86,7 @@ Environment Environment::default_sky(float brightness, float light_share) {
     FloatImage sky(512, 256);
     for (int y = 0; y < sky.height; ++y) {
         for (int x = 0; x < sky.width; ++x) {
-            Vec2 const center((static_cast<float>(x) + 0.5f) / static_cast<float>(sky.width),
-                              (static_cast<float>(y) + 0.5f) / static_cast<float>(sky.height));
-            sky.at(x, y) = brightness * clear_sky(direction_from_equirect(center));
+            sky.at(x, y) = brightness * clear_sky(direction_of_texel(sky, x, y));
         }
     }
     Environment environment(sky);

@@ -113,6 +113,11 @@ Vec3 direction_from_equirect(Vec2 point) {
     return {std::sin(theta) * std::sin(phi), std::cos(theta), -std::sin(theta) * std::cos(phi)};
 }
 
+Vec3 direction_of_texel(FloatImage const& map, int x, int y) {
+    return direction_from_equirect(Vec2((static_cast<float>(x) + 0.5f) / static_cast<float>(map.width),
+                                        (static_cast<float>(y) + 0.5f) / static_cast<float>(map.height)));
+}
+
 Vec3 sample_equirect(FloatImage const& map, Vec2 point) {
     float const x = point.x * static_cast<float>(map.width) - 0.5f;
     float const y =
@@ -154,9 +159,7 @@ OctahedralMap filter_diffuse(std::vector<FloatImage> const& levels, int side) {
     std::vector<Source> sources;
     for (int y = 0; y < map.height; ++y) {
         for (int x = 0; x < map.width; ++x) {
-            Vec2 const center((static_cast<float>(x) + 0.5f) / static_cast<float>(map.width),
-                              (static_cast<float>(y) + 0.5f) / static_cast<float>(map.height));
-            sources.push_back({direction_from_equirect(center), map.at(x, y), row_weight(y, map.height)});
+            sources.push_back({direction_of_texel(map, x, y), map.at(x, y), row_weight(y, map.height)});
         }
     }
     std::vector<Vec3> const normals = octahedral_directions(side);

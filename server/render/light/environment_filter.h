@@ -10,6 +10,8 @@ namespace framelet {
 /// Point of an equirectangular map, [0,1]^2, for a direction, and back (environment.h states the mapping).
 Vec2 equirect_from_direction(Vec3 const& direction);
 Vec3 direction_from_equirect(Vec2 point);
+/// The direction of the middle of a texel.
+Vec3 direction_of_texel(FloatImage const& map, int x, int y);
 
 /// Bilinear look-up; wraps around in u.
 Vec3 sample_equirect(FloatImage const& map, Vec2 point);

@@ -20,6 +20,11 @@ Mat4 to_mat4(aiMatrix4x4 const& m) { // Assimp's are row by row
     return {m.a1, m.b1, m.c1, m.d1, m.a2, m.b2, m.c2, m.d2, m.a3, m.b3, m.c3, m.d3, m.a4, m.b4, m.c4, m.d4};
 }
 
+/// Transform of what stands at `position` and looks along -`back`; `right` and `back` are unit, at right angles.
+Mat4 placed(Vec3 const& right, Vec3 const& back, aiVector3D const& position) {
+    return Mat4(Vec4(right, 0), Vec4(glm::cross(back, right), 0), Vec4(back, 0), Vec4(to_vec3(position), 1));
+}
+
 struct Builder {
     aiScene const& from;
     Scene& scene;
@@ -134,11 +139,9 @@ struct Builder {
             Vec3 const back = unit_or(-to_vec3(source.mLookAt), Vec3(0, 0, 1));
             Vec3 const right =
                 unit_or(glm::cross(unit_or(to_vec3(source.mUp), Vec3(0, 1, 0)), back), any_perpendicular(back));
-            Mat4 const local(Mat4(Vec4(right, 0), Vec4(glm::cross(back, right), 0), Vec4(back, 0),
-                                  Vec4(to_vec3(source.mPosition), 1)));
             SceneCamera camera;
             camera.name = source.mName.C_Str();
-            camera.node = add_node(camera.name, find(source.mName), local);
+            camera.node = add_node(camera.name, find(source.mName), placed(right, back, source.mPosition));
             float const aspect = source.mAspect > 0 ? source.mAspect : 16.0f / 9.0f;
             if (source.mOrthographicWidth > 0) {
                 camera.projection = Projection::orthographic;
@@ -166,9 +169,7 @@ struct Builder {
                                                                    : LightType::point;
             Vec3 const back = unit_or(-to_vec3(source.mDirection), Vec3(0, 0, 1));
             Vec3 const right = any_perpendicular(back);
-            Mat4 const local(Mat4(Vec4(right, 0), Vec4(glm::cross(back, right), 0), Vec4(back, 0),
-                                  Vec4(to_vec3(source.mPosition), 1)));
-            light.node = add_node(light.name, find(source.mName), local);
+            light.node = add_node(light.name, find(source.mName), placed(right, back, source.mPosition));
             Vec3 const color(source.mColorDiffuse.r, source.mColorDiffuse.g, source.mColorDiffuse.b);
             float const strength = std::max({color.x, color.y, color.z});
             light.color = strength > 0 ? color / strength : Vec3(1);

@@ -8,10 +8,6 @@
 namespace framelet {
 namespace {
 
-std::string node_name(std::size_t index) {
-    return "node " + std::to_string(index);
-}
-
 /// `index` where it names one of `count` things, else an InputError.
 std::size_t checked(int index, std::size_t count, std::string const& what) {
     if (index < 0 || static_cast<std::size_t>(index) >= count) {
@@ -136,7 +132,8 @@ GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const&
         std::size_t const file_index = checked(next.node, model.nodes.size(), "node");
         tinygltf::Node const& from = model.nodes[file_index];
         if (mapping.node[file_index] != none) {
-            throw InputError(node_name(file_index) + " is reached twice: it is in a cycle or has two parents");
+            throw InputError("node " + std::to_string(file_index) +
+                             " is reached twice: it is in a cycle or has two parents");
         }
         auto const index = static_cast<Index>(scene.nodes.size());
         mapping.node[file_index] = index;
