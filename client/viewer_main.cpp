@@ -1,6 +1,5 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
 #include <iostream>
-#include <optional>
 #include <utility>
 #include <vector>
 

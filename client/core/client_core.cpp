@@ -1,10 +1,8 @@
 #include "client/core/client_core.h"
 
 #include <algorithm>
-#include <cmath>
 #include <condition_variable>
 #include <mutex>
-#include <thread>
 #include <utility>
 
 #include "client/core/connection/server_connection.h"

@@ -2,7 +2,6 @@
 // arithmetic of `paint_warped_block`, others fill holes and filter outlines. In: jobs. Out: a texture, what showed.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <vector>

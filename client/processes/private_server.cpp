@@ -4,7 +4,7 @@
 #include <cerrno>
 #include <charconv>
 #include <chrono>
-#include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <string_view>
 #include <system_error>

@@ -2,7 +2,6 @@
 // listens, or the line that says why it does not. What else it prints goes to this program's standard error.
 #pragma once
 
-#include <filesystem>
 #include <functional>
 #include <mutex>
 #include <optional>

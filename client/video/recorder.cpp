@@ -1,6 +1,7 @@
 #include "client/video/recorder.h"
 
 #include <algorithm>
+#include <exception>
 #include <iomanip>
 #include <sstream>
 #include <utility>
@@ -9,7 +10,6 @@
 
 #include "common/counted.h"
 #include "common/cpu_clock.h"
-#include "common/error.h"
 
 namespace framelet {
 

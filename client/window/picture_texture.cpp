@@ -1,7 +1,6 @@
 #include "client/window/picture_texture.h"
 
 #include <algorithm>
-#include <string>
 
 #include <epoxy/gl.h>
 

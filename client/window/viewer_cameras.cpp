@@ -1,9 +1,7 @@
 // The cameras that a viewer looks through: those of the scene, bookmarks, and its own as a file.
 #include <filesystem>
-#include <utility>
 
 #include "client/window/kept/user_files.h"
-#include "client/window/overlay/help_text.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"

@@ -1,6 +1,5 @@
 // Carries out what the hands and the keys ask of a viewer.
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <iomanip>
 #include <iostream>
@@ -10,8 +9,6 @@
 #include "client/window/kept/film_file.h"
 #include "client/window/kept/scene_memory.h"
 #include "client/window/kept/user_files.h"
-#include "client/window/overlay/help_text.h"
-#include "client/window/overlay/key_table.h"
 #include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"

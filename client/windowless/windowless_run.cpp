@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <cmath>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -23,7 +22,6 @@
 #include "client/tev/tev_sender.h"
 #include "client/video/film_sink.h"
 #include "client/video/video_writer.h"
-#include "common/color.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"

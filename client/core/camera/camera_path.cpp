@@ -1,9 +1,8 @@
 #include "client/core/camera/camera_path.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
-#include <iterator>
+#include <initializer_list>
 #include <numbers>
 
 #include <glm/geometric.hpp>

@@ -1,7 +1,6 @@
 #include "client/core/drawn_over/framelet_outlines.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
 

@@ -1,6 +1,8 @@
 #include "client/gpu/gl/render_pass.h"
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include <epoxy/gl.h>
 

@@ -1,9 +1,8 @@
 // A program that renders from textures into textures. In: the text of two shaders, names of what they read. Out: draws.
 #pragma once
 
+#include <cstdint>
 #include <initializer_list>
-#include <string>
-#include <vector>
 
 #include "client/gpu/gl/gl_objects.h"
 

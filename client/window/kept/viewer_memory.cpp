@@ -1,6 +1,7 @@
 #include "client/window/kept/viewer_memory.h"
 
 #include <algorithm>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 

@@ -1,7 +1,6 @@
 // The settings that the window remembers from one run to the next. In and out: a file.
 #pragma once
 
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
