@@ -45,7 +45,6 @@ public:
     void add(Picture const& picture, bool changed, bool taken = true);
     void show(ShownFrame const& frame) override { add(frame.picture, frame.changed, frame.chosen); }
     void finish() override;
-    std::uint64_t frames() const { return frames_; }
     double cpu_seconds() const override { return cpu_seconds_; }
 
 private:

@@ -362,11 +362,4 @@ std::size_t GpuCanvas::made_objects() const {
     return impl_->count.made;
 }
 
-std::size_t GpuCanvas::memory_bytes() const {
-    // The cells of the far passes are a third as many as the pixels, 16 bytes each, and are there twice.
-    constexpr std::size_t bytes_of_pixel = 4 + 4 + 16 + 4 + 4 + 2 * 16 / 3;
-    return impl_->atlas.memory_bytes() + bytes_of_pixel * static_cast<std::size_t>(impl_->viewport.width) *
-                                             static_cast<std::size_t>(impl_->viewport.height);
-}
-
 } // namespace framelet

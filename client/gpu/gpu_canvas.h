@@ -33,8 +33,6 @@ public:
 
     /// Objects of OpenGL that it has made since it began.
     std::size_t made_objects() const;
-    /// Bytes that it takes on the card, about.
-    std::size_t memory_bytes() const;
 
 private:
     struct Impl;

@@ -173,8 +173,4 @@ void SampleAtlas::update(std::span<Grid const> grids, std::span<SmallGrid const>
     glPixelStorei(GL_UNPACK_ROW_LENGTH, 0);
 }
 
-std::size_t SampleAtlas::memory_bytes() const {
-    return sizeof(PackedSample) * static_cast<std::size_t>(layer_side) * layer_side * static_cast<std::size_t>(layers_);
-}
-
 } // namespace framelet

@@ -47,7 +47,6 @@ public:
     Position small_position(std::size_t number) const { return position_of(small_pages_[number], 0); }
 
     std::uint32_t texture() const { return texture_.get(); }
-    std::size_t memory_bytes() const;
 
 private:
     struct Page {

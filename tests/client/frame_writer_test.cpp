@@ -57,7 +57,6 @@ TEST_F(FrameWriterTest, WritesEveryFrameAndRepeatsThoseThatDidNotChange) {
         writer.add(grey(static_cast<std::uint8_t>(i / 3 * 3)), i % 3 == 0);
     }
     writer.finish();
-    EXPECT_EQ(writer.frames(), 30u);
     for (int i = 0; i < 30; ++i) {
         Picture const picture =
             read_picture(FramePattern((folder_ / "deep" / "%02d.png").string()).path(static_cast<std::uint64_t>(i)));

@@ -14,7 +14,6 @@ public:
     /// `lag_seconds` >= 0, of the viewer's own clock.
     explicit LateClock(double lag_seconds) : lag_seconds_(lag_seconds) {}
 
-    double lag_seconds() const { return lag_seconds_; }
     /// Notes what the scene's clock says now and returns what it said a lag ago: interpolated between the readings
     /// before and after that, the first reading where none is that old. `now_seconds` does not go back.
     SceneTime read(double now_seconds, SceneTime scene_time);
