@@ -132,10 +132,10 @@ TEST(Bookmarks, WhatWasKeptByNameAloneIsWhereTheyBegin) {
 }
 
 TEST(UserFiles, NamesOfScenesAreNoWaysToOtherFolders) {
-    EXPECT_EQ(file_stem_for("wind mill-2"), "wind mill-2");
-    EXPECT_EQ(file_stem_for("../../etc/passwd"), "_.._.._etc_passwd");
-    EXPECT_EQ(file_stem_for(""), "_");
-    EXPECT_EQ(file_stem_for(std::string(500, 'a')).size(), 100u);
+    EXPECT_EQ(file_stem_of_scene("wind mill-2", 0), "wind mill-2");
+    EXPECT_EQ(file_stem_of_scene("../../etc/passwd", 0), "_.._.._etc_passwd");
+    EXPECT_EQ(file_stem_of_scene("", 0), "_");
+    EXPECT_EQ(file_stem_of_scene(std::string(500, 'a'), 0).size(), 100u);
 }
 
 TEST(UserFiles, NewFilesNeverReplaceOthers) {

@@ -74,15 +74,8 @@ Bookmark read_bookmark(Json entry, std::string const& file) {
     return out;
 }
 
-} // namespace
-
-std::string camera_file_text(Camera const& camera) {
-    if (camera.projection == Projection::orthographic) {
-        throw InputError("a camera file cannot hold an orthographic camera");
-    }
-    return camera_json(camera).dump() + "\n";
-}
-
+/// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place
+/// of "fov_degrees" where it is that}, ...]}.
 std::string bookmarks_text(std::vector<Bookmark> const& bookmarks) {
     Json cameras = Json::array();
     for (Bookmark const& bookmark : bookmarks) {
@@ -93,6 +86,7 @@ std::string bookmarks_text(std::vector<Bookmark> const& bookmarks) {
     return Json{{"cameras", std::move(cameras)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
+/// Reads such a text. Throws InputError; `name` of the file is for its message.
 std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name) {
     Json const document = Json::parse(text, nullptr, false);
     if (!document.is_object() || !document.contains("cameras") || !document["cameras"].is_array() ||
@@ -104,6 +98,15 @@ std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const
         out.push_back(read_bookmark(entry, name));
     }
     return out;
+}
+
+} // namespace
+
+std::string camera_file_text(Camera const& camera) {
+    if (camera.projection == Projection::orthographic) {
+        throw InputError("a camera file cannot hold an orthographic camera");
+    }
+    return camera_json(camera).dump() + "\n";
 }
 
 Bookmarks::Bookmarks(std::filesystem::path file, std::filesystem::path const& older) : file_(std::move(file)) {

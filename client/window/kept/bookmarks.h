@@ -20,12 +20,6 @@ struct Bookmark {
 /// not know.
 std::string camera_file_text(Camera const& camera);
 
-/// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place
-/// of "fov_degrees" where it is that}, ...]}.
-std::string bookmarks_text(std::vector<Bookmark> const& bookmarks);
-/// Reads such a text. Throws InputError; `name` of the file is for its message.
-std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name);
-
 /// Files of a scene's bookmarks; empty: there is none.
 struct BookmarkFiles {
     std::filesystem::path own;

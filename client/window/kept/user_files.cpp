@@ -28,6 +28,20 @@ fs::path path_variable(char const* name) {
     return path.is_absolute() ? path : fs::path();
 }
 
+/// A file's name for something with this name: never one of another folder, never a hidden one, never too long.
+std::string file_stem_for(std::string const& name) {
+    std::string out;
+    for (char const c : name.substr(0, longest_stem)) {
+        auto const byte = static_cast<unsigned char>(c);
+        bool const is_plain = byte >= 0x80 || std::isalnum(byte) != 0 || c == '-' || c == '_' || c == ' ' || c == '.';
+        out += is_plain ? c : '_';
+    }
+    if (out.empty() || out.front() == '.') {
+        out.insert(0, "_");
+    }
+    return out;
+}
+
 } // namespace
 
 fs::path config_folder() {
@@ -73,19 +87,6 @@ void write_user_file(fs::path const& file, std::string const& text) {
     std::error_code ignored;
     fs::remove(temporary, ignored);
     throw InputError("cannot write " + file.string() + (error ? ": " + error.message() : ""));
-}
-
-std::string file_stem_for(std::string const& name) {
-    std::string out;
-    for (char const c : name.substr(0, longest_stem)) {
-        auto const byte = static_cast<unsigned char>(c);
-        bool const is_plain = byte >= 0x80 || std::isalnum(byte) != 0 || c == '-' || c == '_' || c == ' ' || c == '.';
-        out += is_plain ? c : '_';
-    }
-    if (out.empty() || out.front() == '.') {
-        out.insert(0, "_");
-    }
-    return out;
 }
 
 std::string file_stem_of_scene(std::string const& scene_name, std::uint64_t scene_source) {

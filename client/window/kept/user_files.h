@@ -19,11 +19,9 @@ std::optional<std::string> read_user_file(std::filesystem::path const& file);
 /// line.
 void write_user_file(std::filesystem::path const& file, std::string const& text);
 
-/// A file's name for something with this name: never one of another folder, never a hidden one, never too long.
-std::string file_stem_for(std::string const& name);
-
-/// The name, without an ending, of what is kept for a scene. `scene_source` as in Welcome: scenes of the same name from
-/// other files have others; where it is not known (0) the name alone counts.
+/// The name, without an ending, of what is kept for a scene: never one of another folder, never a hidden one, never too
+/// long. `scene_source` as in Welcome: scenes of the same name from other files have others; where it is not known (0)
+/// the name alone counts.
 std::string file_stem_of_scene(std::string const& scene_name, std::uint64_t scene_source);
 
 /// The path of a new file: "framelet-20240131-235959" and `extension`, such as ".png"; with a number before that where

@@ -47,14 +47,6 @@ std::optional<Viewport> size_of(Json const& value) {
     return Viewport{static_cast<int>(width), static_cast<int>(height)};
 }
 
-} // namespace
-
-void ViewerMemory::note_server(std::string const& address) {
-    std::erase(servers, address);
-    servers.insert(servers.begin(), address);
-    servers.resize(std::min(servers.size(), most_servers));
-}
-
 std::string viewer_memory_text(ViewerMemory const& memory) {
     Json out;
     if (memory.size) {
@@ -69,6 +61,14 @@ std::string viewer_memory_text(ViewerMemory const& memory) {
     out["smooth"] = memory.lag_seconds;
     out["fly_speed"] = memory.fly_speed;
     return out.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+} // namespace
+
+void ViewerMemory::note_server(std::string const& address) {
+    std::erase(servers, address);
+    servers.insert(servers.begin(), address);
+    servers.resize(std::min(servers.size(), most_servers));
 }
 
 ViewerMemory parse_viewer_memory(std::string const& text) {

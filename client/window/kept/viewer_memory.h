@@ -28,8 +28,7 @@ struct ViewerMemory {
     void note_server(std::string const& address);
 };
 
-std::string viewer_memory_text(ViewerMemory const& memory);
-/// Reads such a text; what is missing or makes no sense is as if nothing had been remembered.
+/// Reads the text of the file; what is missing or makes no sense is as if nothing had been remembered.
 ViewerMemory parse_viewer_memory(std::string const& text);
 
 /// Reads framelet/viewer.json where state is kept; a file that cannot be read is as none.

@@ -124,8 +124,7 @@ void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
     ImGui::PopID();
 }
 
-} // namespace
-
+/// Draws the bar's menu of what one can look through.
 void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     float const font = ImGui::GetFontSize();
     float const width = std::clamp(ImGui::GetIO().DisplaySize.x / 10, 5 * font, 9 * font);
@@ -187,6 +186,7 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     ImGui::EndPopup();
 }
 
+/// Draws the bar's list of what can be drawn over the picture.
 void draw_overlay_menu(OverlayMenu const& menu, OverlayFrame& frame) {
     ImGui::SetNextItemWidth(overlays_width());
     char const* const shown = menu.current == DrawnOver::nothing ? "overlay" : name_of(menu.current);
@@ -209,6 +209,8 @@ void draw_overlay_menu(OverlayMenu const& menu, OverlayFrame& frame) {
     }
     ImGui::SameLine();
 }
+
+} // namespace
 
 void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
     TimeLine const& line = *content.time_line;

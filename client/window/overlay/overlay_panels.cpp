@@ -69,9 +69,17 @@ void draw_ramp(Legend const& legend) {
     ImGui::TextUnformatted(legend.oldest.c_str());
 }
 
-} // namespace
+/// The use of the mouse on a panel.
+enum class PanelKind {
+    told, ///< none
+    takes_mouse,
+    scrolls, ///< its wheel scrolls, where there is more of it than room
+};
 
-bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame, PanelKind kind) {
+/// Begins a panel whose own point `anchor` (0..1) lies at that point of the window, a margin away from the edges and
+/// from the bar. `ImGui::End` is to be called after it, whatever it returns.
+bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame,
+                 PanelKind kind = PanelKind::told) {
     ImVec2 const size = ImGui::GetIO().DisplaySize;
     float const margin = ImGui::GetFontSize();
     ImVec2 const place(margin + anchor.x * (size.x - 2 * margin),
@@ -86,6 +94,8 @@ bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame co
                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                             ImGuiWindowFlags_NoFocusOnAppearing | inputs | bars);
 }
+
+} // namespace
 
 void take_area(OverlayFrame& frame) {
     ImVec2 const from = ImGui::GetWindowPos();

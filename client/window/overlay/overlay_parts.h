@@ -27,17 +27,6 @@ struct OverlayFrame {
     float left_width = 0; ///< so much of the upper edge is taken, from the left
 };
 
-/// The use of the mouse on a panel.
-enum class PanelKind {
-    told, ///< none
-    takes_mouse,
-    scrolls, ///< its wheel scrolls, where there is more of it than room
-};
-
-/// Begins a panel whose own point `anchor` (0..1) lies at that point of the window, a margin away from the edges and
-/// from the bar. `ImGui::End` is to be called after it, whatever it returns.
-bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame const& frame,
-                 PanelKind kind = PanelKind::told);
 /// Gives the mouse in the current window's area to the overlay.
 void take_area(OverlayFrame& frame);
 /// Gives the last item a tooltip, also where it cannot be used now: that is when one asks why.
@@ -53,10 +42,6 @@ std::string tip_of(Command command);
 
 /// Draws the bar along the lower edge; sets `bar_height`.
 void draw_bar(OverlayContent const& content, OverlayFrame& frame);
-/// Draws the bar's menu of what one can look through.
-void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame);
-/// Draws the bar's list of what can be drawn over the picture.
-void draw_overlay_menu(OverlayMenu const& menu, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
 void draw_help(TextRows const& rows, OverlayFrame& frame);
