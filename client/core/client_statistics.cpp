@@ -1,5 +1,8 @@
 #include "client/core/client_statistics.h"
 
+#include <algorithm>
+#include <cstddef>
+
 namespace framelet {
 namespace {
 
@@ -19,6 +22,15 @@ double ClientStatistics::decode_ns_per_sample() const {
 
 double ClientStatistics::reconstruct_ns_per_pixel() const {
     return ratio(reconstruct_seconds * 1e9, pixels);
+}
+
+double median_seconds(std::vector<double> times) {
+    if (times.empty()) {
+        return -1;
+    }
+    auto const middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
+    std::nth_element(times.begin(), middle, times.end());
+    return *middle;
 }
 
 } // namespace framelet

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <vector>
 
 namespace framelet {
 
@@ -40,5 +41,8 @@ struct ClientStatistics {
     double decode_ns_per_sample() const;
     double reconstruct_ns_per_pixel() const;
 };
+
+/// The median of times, seconds; -1 where there are none.
+double median_seconds(std::vector<double> times);
 
 } // namespace framelet

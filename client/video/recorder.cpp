@@ -112,15 +112,18 @@ void Recorder::run() {
 
 namespace {
 
-/// The film's pictures a second, as text; those that are left out do not count.
-std::string rate_text(Recorder::Progress const& progress) {
+/// The film's pictures as text: how many, how many a second, and how many are left out, which do not count.
+std::string pictures_text(Recorder::Progress const& progress) {
     constexpr double least_seconds = 1; // before that the rate would jump about
-    if (progress.seconds < least_seconds) {
-        return "";
-    }
     std::ostringstream out;
-    out << ", " << std::fixed << std::setprecision(0) << static_cast<double>(progress.pictures) / progress.seconds
-        << " a second";
+    out << counted(progress.pictures, "picture");
+    if (progress.seconds >= least_seconds) {
+        out << ", " << std::fixed << std::setprecision(0) << static_cast<double>(progress.pictures) / progress.seconds
+            << " a second";
+    }
+    if (progress.left_out > 0) {
+        out << ", " << progress.left_out << " left out";
+    }
     return out.str();
 }
 
@@ -129,10 +132,7 @@ std::string rate_text(Recorder::Progress const& progress) {
 std::string progress_text(Recorder::Progress const& progress) {
     std::ostringstream out;
     out << (progress.is_stopped ? "writing the film, " : "recording ") << std::fixed << std::setprecision(0)
-        << progress.seconds << " s, " << counted(progress.pictures, "picture") << rate_text(progress);
-    if (progress.left_out > 0) {
-        out << ", " << progress.left_out << " left out";
-    }
+        << progress.seconds << " s, " << pictures_text(progress);
     return out.str();
 }
 
@@ -142,10 +142,7 @@ std::string result_text(Recorder::Progress const& progress, fs::path const& path
     }
     std::ostringstream out;
     out << "saved " << path.string() << ": " << std::fixed << std::setprecision(1) << progress.seconds << " s, "
-        << counted(progress.pictures, "picture") << rate_text(progress);
-    if (progress.left_out > 0) {
-        out << ", " << progress.left_out << " left out";
-    }
+        << pictures_text(progress);
     std::error_code error;
     if (auto const bytes = fs::file_size(path, error); !error) {
         out << ", " << static_cast<double>(bytes) * 1e-6 << " MB";

@@ -81,16 +81,6 @@ bool tell_interruption(ClientCore const& core, bool interrupted) {
     return reason.has_value();
 }
 
-/// The median; -1 where there are no values.
-double median(std::vector<double> values) {
-    if (values.empty()) {
-        return -1;
-    }
-    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 FrameSinks make_sinks(WindowlessOptions const& options, std::optional<FramePattern> const& pattern, Viewport viewport) {
     FrameSinks sinks;
     if (options.output == standard_output) {
@@ -203,7 +193,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
             run.converged_seconds = now;
         }
         if (done || Clock::now() >= end || core.end_reason() || is_told_to_end() || tell_end_of_sinks(sinks)) {
-            run.photon_seconds = median(std::move(photon_seconds));
+            run.photon_seconds = median_seconds(std::move(photon_seconds));
             return run;
         }
         run.late_frames += timing.note_shown(Clock::now()) ? 1 : 0;

@@ -25,15 +25,6 @@ std::string fixed(double value, int digits, char const* unit) {
     return out.str();
 }
 
-double median(std::vector<double>& values) {
-    if (values.empty()) {
-        return -1;
-    }
-    auto const middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-    std::nth_element(values.begin(), middle, values.end());
-    return *middle;
-}
-
 } // namespace
 
 void RateMeter::frame(double seconds_taken) {
@@ -56,14 +47,13 @@ bool RateMeter::update(double now_seconds, std::uint64_t bytes) {
     frames_per_second_ = elapsed > 0 ? frames_ / elapsed : 0;
     pictures_per_second_ = elapsed > 0 ? pictures_ / elapsed : 0;
     frame_seconds_ = frames_ > 0 ? taken_ / frames_ : 0;
-    photon_seconds_ = median(photons_);
+    photon_seconds_ = median_seconds(std::exchange(photons_, {}));
     bytes_per_second_ = elapsed > 0 && bytes >= start_bytes_ ? static_cast<double>(bytes - start_bytes_) / elapsed : 0;
     start_ = now_seconds;
     start_bytes_ = bytes;
     frames_ = 0;
     pictures_ = 0;
     taken_ = 0;
-    photons_.clear();
     return true;
 }
 
