@@ -54,8 +54,7 @@ void SceneOpener::reopen() {
 void SceneOpener::begin(Scene scene) {
     asked_ = std::move(scene);
     exit_code_ = 0;
-    opening_.reset();
-    connecting_ = {};
+    give_up();
     try {
         opening_ = std::make_unique<PrivateServer>(asked_.files, asked_.server_options, wake_);
     } catch (std::exception const& error) {

@@ -53,8 +53,8 @@ public:
     void reopen();
     /// Gives up what is being opened.
     void give_up() {
+        opening_.reset(); // so that the attempt to connect, which is waited for, ends with the server
         connecting_ = {};
-        opening_.reset();
     }
     /// Ends the server of the open scene, which is not looked at any more.
     void close() { open_.reset(); }
