@@ -29,14 +29,13 @@ void Attempts::hurry() {
 
 std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
     if (!attempt_.valid() && !is_refused_ && Clock::now() >= next_) {
-        std::packaged_task<std::unique_ptr<ClientCore>()> task([options = options_] {
-            struct Wake {
-                ~Wake() { Window::wake(); } // whatever has come of it
-            } const wake;
-            return connect_for_window(options);
-        });
+        std::packaged_task<std::unique_ptr<ClientCore>()> task(
+            [options = options_] { return connect_for_window(options); });
         attempt_ = task.get_future();
-        std::thread(std::move(task)).detach();
+        std::thread([task = std::move(task)]() mutable {
+            task();
+            Window::wake(); // whatever has come of it
+        }).detach();
     }
     if (!attempt_.valid() || attempt_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) {
         return nullptr;

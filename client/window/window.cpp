@@ -1,6 +1,7 @@
 #include "client/window/window.h"
 
 #include <algorithm>
+#include <mutex>
 #include <optional>
 #include <utility>
 
@@ -46,6 +47,16 @@ std::optional<GamepadAxes> read_gamepad() {
     return {};
 }
 
+/// Guards what `wake` asks of GLFW: its thread may outlive the window, as that of an attempt to connect does which was
+/// given up.
+std::mutex wake_mutex;
+bool can_wake = false;
+
+void set_can_wake(bool can) {
+    std::lock_guard const lock(wake_mutex);
+    can_wake = can;
+}
+
 /// Has GLFW initialised for as long as it lives.
 struct GlfwSession {
     GlfwSession() {
@@ -53,8 +64,12 @@ struct GlfwSession {
             throw InputError("cannot open a window: there is no display (" + last_glfw_error() +
                              "): use framelet-client, which needs none");
         }
+        set_can_wake(true);
     }
-    ~GlfwSession() { glfwTerminate(); }
+    ~GlfwSession() {
+        set_can_wake(false);
+        glfwTerminate();
+    }
     GlfwSession(GlfwSession const&) = delete;
     GlfwSession& operator=(GlfwSession const&) = delete;
 };
@@ -357,7 +372,10 @@ WindowInput Window::wait(double at_most_seconds) {
 }
 
 void Window::wake() {
-    glfwPostEmptyEvent();
+    std::lock_guard const lock(wake_mutex);
+    if (can_wake) {
+        glfwPostEmptyEvent();
+    }
 }
 
 void Window::upload(Picture const& picture, std::span<PixelRect const> changed) {

@@ -63,7 +63,7 @@ public:
 
     /// Sleeps until something happens, somebody calls `wake` or the time is over; then returns what happened.
     WindowInput wait(double at_most_seconds);
-    /// Ends `wait`. May be called from any thread.
+    /// Ends `wait`; does nothing while there is no window. May be called from any thread.
     static void wake();
 
     /// Uploads the changed rectangles of the picture (as `FrameletCache::take_changed` orders them: by rows).
