@@ -14,7 +14,7 @@ CLI::Validator overlay_kind() {
     return {[](std::string& input) {
                 std::optional<DrawnOver> const kind = drawn_over_of(input);
                 if (!kind) {
-                    return "'" + input + "' is none of " + list_of_drawn_over();
+                    return "'" + input + "' is no overlay: write " + list_of_drawn_over();
                 }
                 input = std::to_string(static_cast<int>(*kind));
                 return std::string();

@@ -77,8 +77,8 @@ public:
     /// Draws over a copy of the picture that `update_picture` made: outlines of the framelets that are held, as
     /// `draw_outlines`, or of the newest batch alone, as `draw_arrivals`; how far its pixels are to be trusted, as
     /// `draw_confidence` (outlines as well, where nothing is moved; while the scene is smoothed, of what came last);
-    /// how often tiles are replaced, as `RefreshRates`; or what nothing is held of, as `draw_holes`. A picture of
-    /// another size stays as it is.
+    /// how often each 16x16 pixels are replaced, as `RefreshRates`; or what nothing is held of, as `draw_holes`. A
+    /// picture of another size stays as it is.
     void draw_overlay(Picture& picture);
     /// True while what is drawn over changes though the picture does not.
     bool overlay_fades() const;

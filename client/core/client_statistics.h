@@ -16,7 +16,7 @@ struct ClientStatistics {
     std::uint64_t samples = 0;
     std::uint64_t bytes = 0; ///< of batches: samples, shapes, tracks, tiles and headers
     std::uint64_t pixels = 0; ///< reconstructed
-    double decode_seconds = 0;
+    double decode_seconds = 0; ///< by the clock, as the next two, whatever processors were at work
     double insert_seconds = 0;
     double reconstruct_seconds = 0;
     double first_picture_seconds = -1; ///< from the first camera to the first picture; -1: not yet

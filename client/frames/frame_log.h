@@ -12,7 +12,7 @@ namespace framelet {
 
 struct FrameEntry {
     std::uint64_t frame = 0; ///< as in the picture's file name
-    double unix_seconds = 0; ///< when the picture was ready to be shown
+    double unix_seconds = 0; ///< when the picture was shown
     double scene_seconds = 0; ///< what the scene's clock stood at, as far as the client knew
     bool changed = false; ///< the picture differs from the one before
     bool complete = false; ///< the picture is as good as it gets

@@ -55,7 +55,7 @@ void SheetMoments::take_stills(ClientCore& core) {
     }
     if (moves && !core.controls()) {
         throw InputError("the contact sheet is not written: its stills need the scene's clock, which another viewer "
-                         "controls");
+                         "controls: start the server with --shared-control");
     }
     ClockState const before = core.clock();
     core.set_smoothing(0); // the moment itself is wanted

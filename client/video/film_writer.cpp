@@ -91,7 +91,7 @@ public:
 
     void finish() override {
         if (!context_) {
-            throw InputError("there was no picture");
+            throw InputError("cannot write " + path_.string() + ": no picture was shown while it was taken");
         }
         check(avcodec_send_frame(context_.get(), nullptr), "encode the last picture");
         drain();

@@ -206,7 +206,8 @@ void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file)
     std::cerr << "framelet-client: waiting for the stills of the contact sheet" << std::endl;
     sheet.take_stills(core);
     if (sheet.pairs().empty()) {
-        std::cerr << "framelet-client: the run was too short for a contact sheet" << std::endl;
+        std::cerr << "framelet-client: there is no contact sheet: the run ended before a quarter of --duration"
+                  << std::endl;
         return;
     }
     write_png(file, contact_sheet(sheet.pairs()));

@@ -127,7 +127,7 @@ std::string figure_tip(std::string const& name) {
         {"received",
          "since the viewer first connected: batches (what comes in one message), framelets (tiles of 16x16 samples), "
          "and bytes for each sample"},
-        {"cost", "this machine's processor time to decode a sample, and to make a pixel of the picture"},
+        {"cost", "how long this machine takes to decode a sample, and to make a pixel of the picture"},
         {"cache", "framelets that are held, and the memory for them"},
     };
     auto const* const found =
@@ -164,7 +164,8 @@ std::optional<Legend> legend_of(DrawnOver drawn) {
         return Legend{"when each pixel was rendered (F3)", "now", "10 s ago",
                       "the darker the coarser; magenta: made up", tip};
     case DrawnOver::refresh_rate:
-        return Legend{"how often tiles are replaced (F3)", "60 a second", "0.1 a second", "grey: more rarely", tip};
+        return Legend{"how often 16x16 pixels are replaced (F3)", "60 a second", "0.1 a second", "grey: more rarely",
+                      tip};
     case DrawnOver::arrivals:
         return Legend{"yellow: what came last (F3)", "", "", "", tip};
     case DrawnOver::holes:
