@@ -10,7 +10,7 @@
 namespace framelet {
 
 struct DisplayChoice {
-    std::optional<float> exposure_ev;
+    std::optional<float> exposure_ev; ///< as in ViewerSettings
     std::optional<double> lag_seconds; ///< as in `ClientCore::set_smoothing`
     bool unwarped = false; ///< every pixel stays where it was rendered
     DrawnOver drawn_over = DrawnOver::nothing;

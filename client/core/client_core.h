@@ -47,6 +47,7 @@ public:
     /// Asks for this view. Only the newest one is kept while the network is busy. `scene_camera` >= 0: through that
     /// camera of the scene. Call it at most once a display frame; a view that equals the last one costs nothing.
     void set_view(Camera const& camera, Viewport viewport, int scene_camera = -1);
+    /// Tells the server what this viewer wants, in the sessions that follow as well.
     void set_settings(ViewerSettings const& settings);
     /// Shows the scene, not the camera, `lag_seconds` late, in [0, `max_lag_seconds`], interpolated between what was
     /// rendered before that moment and after it instead of extrapolated from what came last; 0: not late. Has no effect

@@ -67,7 +67,7 @@ private:
     std::atomic<double> cpu_seconds_ = 0;
     std::filesystem::path newest_file_; ///< the newest that was written; used by the writing thread only
 
-    mutable std::mutex mutex_; // guards what follows
+    std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
     bool writes_; ///< what waits is written; else it is kept

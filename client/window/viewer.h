@@ -100,7 +100,7 @@ private:
     int bookmark_ = -1; ///< the one gone to last; -1: none
     bool is_at_bookmark_ = false; ///< the camera has not been moved since
     std::optional<Vec3> grabbed_; ///< point of the world that the hands have taken hold of, until the camera moves
-    std::optional<float> const chosen_exposure_; ///< of all scenes
+    std::optional<float> const chosen_exposure_; ///< by the command line, for all scenes; stops
     bool has_set_exposure_ = false; ///< by hand, in this scene
     ViewerSettings settings_;
     double lag_seconds_; ///< 0: the scene is not smoothed

@@ -21,7 +21,7 @@ namespace framelet {
 struct WindowInput {
     std::vector<Command> commands; ///< in order
     Vec2 orbit{0, 0}; ///< dragged, pixels of the framebuffer, x right, y down
-    Vec2 pan{0, 0};
+    Vec2 pan{0, 0}; ///< likewise
     float dolly = 0; ///< steps, positive: nearer
     Vec2 look{0, 0}; ///< way of the mouse while it turns the head, likewise
     float speed = 0; ///< steps of the wheel while the mouse turns the head
@@ -49,6 +49,7 @@ public:
     Viewport framebuffer_size() const;
     /// Pixels of the framebuffer for one unit of text size; another one on another screen, which is a `redraw`.
     float content_scale() const;
+    /// Frames a second of the main screen; 60 where that is not known.
     double refresh_rate() const;
     /// True where the window is iconified, or on no screen at all: nobody sees what is drawn. A window that others
     /// cover is not told of it.

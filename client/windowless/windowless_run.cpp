@@ -131,7 +131,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
     bool interrupted = false;
     run.viewport = viewport;
     Picture picture = bare_picture(viewport);
-    Picture overlaid; //< the picture and what is drawn over it
+    Picture overlaid; ///< the picture and what is drawn over it
     bool faded = false; ///< what is drawn over it was fading in the last frame
     std::vector<PixelRect> changed;
     std::vector<double> photon_seconds;

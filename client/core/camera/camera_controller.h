@@ -55,8 +55,9 @@ public:
     float fly_speed() const;
     /// Makes flying a quarter faster (positive) or slower with each step.
     void change_speed(float steps);
-    /// The factor that this has set, 1 at first: 100 at most, and no less than 1/100.
+    /// The factor that `change_speed` has set, 1 at first: 100 at most, and no less than 1/100.
     float speed_factor() const { return speed_; }
+    /// Sets that factor; one beyond these bounds becomes the nearest within.
     void set_speed_factor(float factor);
     static constexpr float most_speed_factor = 100;
     /// Turns the head in place, to where the pointer goes: the picture's whole height is a quarter turn.

@@ -16,7 +16,7 @@ namespace {
 
 using Json = nlohmann::json;
 
-constexpr double largest_coordinate = 1e9;
+constexpr double largest_coordinate = 1e9; ///< metres
 constexpr std::size_t most_bytes = 16u << 20;
 constexpr std::size_t most_keys = 100000;
 

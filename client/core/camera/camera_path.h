@@ -10,10 +10,10 @@
 namespace framelet {
 
 struct CameraKey {
-    double time = 0; ///< seconds
-    Vec3 position{0, 0, 0};
-    Vec3 target{0, 0, -1};
-    Vec3 up{0, 1, 0};
+    double time = 0; ///< seconds since the path's start
+    Vec3 position{0, 0, 0}; ///< in the world, metres
+    Vec3 target{0, 0, -1}; ///< a point that is in the middle of the picture; likewise
+    Vec3 up{0, 1, 0}; ///< direction in the world
     float vertical_fov = 0.7854f; ///< radians
 };
 
@@ -24,6 +24,7 @@ struct CameraPath {
     int scene_camera = -1; ///< >= 0: a camera of the scene instead of keys
     std::vector<CameraKey> keys;
 
+    /// The camera so many seconds after the path's start. There has to be a key.
     Camera at(double seconds) const;
     /// Seconds until the last key.
     double duration() const { return keys.empty() ? 0 : keys.back().time; }

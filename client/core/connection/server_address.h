@@ -24,7 +24,7 @@ ServerAddress parse_address(std::string const& text, std::uint16_t port_without)
 
 struct ConnectionOptions {
     ServerAddress server;
-    std::string token;
+    std::string token; ///< empty: on this machine that which a server of the same user has left
     bool tls = false;
     bool insecure = false; ///< without TLS the token is sent to other machines too, which whoever is between can read
     std::string authority_file; ///< certificates to trust for TLS; empty: the system's certificate authorities

@@ -12,7 +12,7 @@ namespace framelet {
 /// Red, green, blue, [0, 255].
 using OverlayColor = std::array<float, 3>;
 
-/// Of pixels of which nothing is held.
+/// The colour of pixels of which nothing is held.
 inline constexpr OverlayColor hole_color{255, 0, 255};
 
 /// The colour of an age, from bright yellow at 0 over orange and red to dark blue at 1 and beyond.

@@ -10,9 +10,9 @@
 
 namespace framelet {
 
-/// Of a picture of what was moved. `confidence` has one for each pixel, in rows.
+/// Draws over a picture of what was moved. `confidence` has one for each pixel, in rows.
 void draw_holes(std::span<PixelConfidence const> confidence, Picture& picture);
-/// Of a picture of which nothing was moved, which has the viewport's size.
+/// Draws over a picture of which nothing was moved, and which has the viewport's size.
 void draw_holes(FrameletCache const& cache, Picture& picture);
 
 } // namespace framelet

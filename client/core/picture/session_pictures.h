@@ -35,7 +35,7 @@ public:
               BlockCanvas* canvas = nullptr);
     /// Sets what `draw_over` draws over the pictures of all makers, from the next `prepare` on.
     void set_drawn_over(DrawnOver what) { drawn_over_ = what; }
-    /// As of the maker whose picture is shown. Call both after `prepare`.
+    /// Has the maker whose picture is shown draw over a copy of it. Call this and the next one after `prepare`.
     void draw_over(Picture& picture) { (earlier_ ? earlier_ : current_)->draw_over(picture); }
     bool drawn_over_fades() const { return shown().drawn_over_fades(); }
     /// The maker whose picture is shown. Call it after `prepare`.

@@ -10,17 +10,18 @@
 
 namespace framelet {
 
-/// Of the scene's clock. `is_gone`: there is no session. `moves`: the scene has animation. `controls`: as in Status.
+/// Says why the scene's clock cannot be set. `is_gone`: there is no session. `moves`: the scene has animation.
+/// `controls`: as in Status.
 std::string clock_lacks(bool is_gone, bool moves, bool controls);
-/// Of cameras of the scene, of which there are so many.
+/// Says why none of the scene's cameras can be looked through. `count`: how many it has.
 std::string scene_cameras_lack(std::size_t count);
-/// Of showing the scene late. `moves_samples`: as `ViewerSettings::reproject`.
+/// Says why the scene cannot be shown late. `moves_samples`: as `ViewerSettings::reproject`.
 std::string smoothing_lacks(bool moves, bool moves_samples);
-/// Of drawing over a picture how old its pixels are.
+/// Says why the confidence of pixels cannot be drawn over the picture.
 std::string confidence_lacks(bool moves_samples);
-/// Of camera files of this camera.
+/// Says why this camera cannot be put into a camera file.
 std::string camera_file_lacks(Camera const& camera);
-/// Of screenshots and films.
+/// Says why no screenshot or film can be taken.
 std::string picture_lacks(bool has_picture);
 
 } // namespace framelet

@@ -11,7 +11,7 @@
 
 namespace framelet {
 
-/// Display frames and bytes of the last second or so.
+/// The figures of the last half second or so: display frames, pictures, bytes.
 class RateMeter {
 public:
     /// A display frame was shown, which took so long to make.
@@ -61,9 +61,9 @@ TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock
 /// The figures for who looks into what it costs.
 TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport,
                      std::string const& painter);
-/// What the figure of this name is, for its tooltip: one of a plot or of either kind of rows.
+/// Says what the figure of this name is, for its tooltip: one of a plot or of either kind of rows.
 std::string figure_tip(std::string const& name);
-/// What this kind of overlay shows, for its tooltip.
+/// Says what this kind of overlay shows, for its tooltip.
 std::string overlay_tip(DrawnOver drawn);
 /// The legend of what is drawn over the picture; nothing where it needs none.
 std::optional<Legend> legend_of(DrawnOver drawn);
