@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "client/core/connection/server_connection.h"
+#include "client/core/picture/display_timing.h"
 #include "client/core/picture/making_time.h"
 #include "client/core/picture/session_pictures.h"
 #include "client/core/session/arrived_batches.h"
@@ -23,10 +24,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
-}
-
-Clock::duration clock_duration(double seconds) {
-    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(seconds));
 }
 
 /// Bytes, about, that a batch takes on the wire besides its payloads and one byte for each tile.
@@ -444,7 +441,7 @@ bool ClientCore::update_picture(Picture& picture, std::vector<PixelRect>& change
         if (!core.asked.exists()) {
             return false;
         }
-        shown_at = std::max({shown_at, core.shown_at, called + clock_duration(core.making.expected())});
+        shown_at = std::max({shown_at, core.shown_at, called + DisplayTiming::duration(core.making.expected())});
         core.shown_at = shown_at;
     }
     Clock::time_point begun, made;

@@ -356,7 +356,7 @@ OverlayContent Viewer::overlay_content() {
         out.note = note_;
     }
     opener_.show(out);
-    out.has_pointer = out.has_pointer && !window_.has_mouse_look();
+    out.has_pointer = !window_.has_mouse_look();
     out.sign = sign_text(
         {out.sign, interrupted_ && lost_.empty(), window_.has_mouse_look(),
          recorder_ ? with_keys(progress_text(recorder_->progress()), Command::toggle_recording) : std::string()});

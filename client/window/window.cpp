@@ -259,7 +259,6 @@ struct Window::Impl {
     }
 
     void read_held_keys() {
-        input.fly = {};
         input.fly.direction = held_direction();
         input.fly.fast = !is_typing && shift();
     }

@@ -149,12 +149,10 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         interrupted = tell_interruption(core, interrupted);
         double const now = seconds_since(start);
         bool const done = options.until_converged && now >= path_duration && core.is_complete();
-        Camera camera = welcome.start_camera;
-        if (path && path->scene_camera < 0) {
-            camera = path->at(now);
-        }
+        int const scene_camera = path ? path->scene_camera : start_scene_camera(welcome);
+        Camera const camera = path && scene_camera < 0 ? path->at(now) : welcome.start_camera;
         if (!done) {
-            core.set_view(camera, viewport, path ? path->scene_camera : start_scene_camera(welcome));
+            core.set_view(camera, viewport, scene_camera);
         }
         Clock::time_point const shown_at = timing.show(Clock::now(), core.making_seconds());
         bool const news = core.update_picture(picture, changed, shown_at);
@@ -163,7 +161,6 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         if (news && statistics.photon_seconds >= 0) {
             photon_seconds.push_back(statistics.photon_seconds);
         }
-        int const scene_camera = path ? path->scene_camera : start_scene_camera(welcome);
         if (log != nullptr) {
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
