@@ -47,7 +47,6 @@ enum class Command : std::uint8_t {
     toggle_recording,
     scene_camera, ///< camera 1 of the scene; `scene_camera` + n is the n-th more, up to 8 more
     bookmark = scene_camera + 9, ///< bookmark 1, likewise
-    last = bookmark + 8,
 };
 
 /// Number of cameras of each kind that have a key.
