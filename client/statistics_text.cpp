@@ -17,12 +17,14 @@ nlohmann::json reached(double seconds) {
 }
 
 std::string milliseconds(double seconds) {
-    if (seconds < 0) {
-        return "never";
-    }
     std::ostringstream out;
     out << std::fixed << std::setprecision(seconds < 0.01 ? 2 : 0) << seconds * 1e3 << " ms";
     return out.str();
+}
+
+/// When something was reached, as text; `seconds` < 0: it was not.
+std::string after(double seconds) {
+    return seconds < 0 ? "never" : "after " + milliseconds(seconds);
 }
 
 } // namespace
@@ -71,15 +73,15 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
     std::ostringstream out;
     out << std::fixed << std::setprecision(1);
     out << run.scene << ", " << run.viewport.width << "x" << run.viewport.height << ", " << s.seconds << " s\n"
-        << "  pictures          " << static_cast<double>(s.pictures) / seconds << " a second, the first after "
-        << milliseconds(s.first_picture_seconds) << "\n"
+        << "  pictures          " << static_cast<double>(s.pictures) / seconds << " a second, the first "
+        << after(s.first_picture_seconds) << "\n"
         << "  network           " << static_cast<double>(s.bytes) * 8e-6 / seconds << " Mbit/s, "
         << static_cast<double>(s.bytes) * 1e-6 << " MB\n"
         << "  motion to photon  "
         << (run.photon_seconds < 0 ? "not measured: nothing moved" : milliseconds(run.photon_seconds)) << "\n"
         << "  done              " << s.coverage * 100 << "% of the picture, "
         << (run.converged_seconds < 0 ? "not yet as good as it gets"
-                                      : "as good as it gets after " + milliseconds(run.converged_seconds))
+                                      : "as good as it gets " + after(run.converged_seconds))
         << "\n";
     if (run.still_difference >= 0) {
         out << "  off the stills    " << std::setprecision(2) << run.still_difference * 100
@@ -88,9 +90,12 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
     }
     out << "details\n"
         << "  frames            " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures
-        << " changed; whole after " << milliseconds(s.full_picture_seconds) << "\n"
-        << "  round trip        " << milliseconds(s.round_trip_seconds) << ", least "
-        << milliseconds(s.least_round_trip_seconds) << "\n"
+        << " changed; whole " << after(s.full_picture_seconds) << "\n"
+        << "  round trip        "
+        << (s.round_trip_seconds < 0
+                ? "not measured"
+                : milliseconds(s.round_trip_seconds) + ", least " + milliseconds(s.least_round_trip_seconds))
+        << "\n"
         << "  received          " << counted(s.batches, "batch", "batches") << ", " << counted(s.framelets, "framelet")
         << ", " << static_cast<double>(s.samples) * 1e-6 << " million samples, " << std::setprecision(2)
         << s.bytes_per_sample() << " bytes/sample\n"

@@ -178,7 +178,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
                 core.draw_overlay(overlaid);
             }
             bool const fades = draws && core.overlay_fades();
-            bool const differs = news || fades || std::exchange(faded, fades);
+            bool const differs = news || fades || faded;
             faded = fades;
             ShownFrame const frame{draws ? overlaid : picture, differs, choice.takes(core.clock().time),
                                    seconds_since(start)};
