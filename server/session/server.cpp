@@ -15,7 +15,6 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
-#include "common/error.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
 #include "server/session/admission.h"

@@ -2,7 +2,6 @@
 
 #include <utility>
 
-#include "common/error.h"
 #include "server/session/limits/session_memory.h"
 
 namespace framelet {

@@ -55,7 +55,6 @@ public:
         return codec.encode(batch_, &memory, predicts);
     }
 
-    std::span<Framelet const> rendered() const { return rendered_; }
     Batch const& batch() const { return batch_; }
 
 private:

@@ -51,7 +51,6 @@ public:
     TurnFigures const& learnt_figures() const override { return learnt_->figures; }
 
     AdaptiveRefresh const* scheduler() const override { return &viewer_.refresh; }
-    LinkState link() const { return link_.state(); }
     /// The batch that was learnt last.
     Batch const& learnt_batch() const { return learnt_->batch(); }
 

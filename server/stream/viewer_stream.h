@@ -8,7 +8,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 
 #include "server/stream/posed_scene.h"
 #include "server/stream/stream_event.h"

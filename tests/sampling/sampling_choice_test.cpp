@@ -30,7 +30,7 @@ State random_state(std::mt19937& random) {
 }
 
 SamplingChoice choose(State const& state, int least = 0, int most = sampling_levels - 1) {
-    return choose_sampling(state.region, state.life, state.price, least, most);
+    return choose_sampling(state.region, state.life, state.price, least, most, equal_costs);
 }
 
 /// The value that the header says is minimised.

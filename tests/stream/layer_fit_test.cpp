@@ -279,7 +279,7 @@ TEST(LayerFit, MedianDepthAndTolerance) {
     EXPECT_EQ(median_depth(framelets), 5);
     EXPECT_EQ(median_depth(std::span(framelets).first(1)), 1);
     ViewRays const rays = make_view_rays(Camera{}, {128, 128});
-    LayerTolerance const t = layer_tolerance(5, rays);
+    LayerTolerance const t = layer_tolerance(5, rays, 0);
     float const focal = 1 / glm::length(rays.direction_dx), move = 20 * 5 / focal;
     EXPECT_NEAR(t.inverse_depth * move * focal, 0.25f, 1e-6f);
     EXPECT_NEAR(t.velocity * 0.1f * focal, 0.25f, 1e-5f);

@@ -1,6 +1,5 @@
 #include "server/sampling/field/density_tiling.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include "common/error.h"

@@ -6,6 +6,7 @@
 
 #include "common/image.h"
 #include "server/sampling/field/region_field.h"
+#include "server/sampling/model/sampling_choice.h"
 
 namespace framelet {
 

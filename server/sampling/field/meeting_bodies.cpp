@@ -1,7 +1,6 @@
 #include "server/sampling/field/meeting_bodies.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include <glm/geometric.hpp>
 

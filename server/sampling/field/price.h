@@ -10,6 +10,7 @@
 
 #include "server/render/rays_per_sample.h"
 #include "server/sampling/field/region_field.h"
+#include "server/sampling/model/sampling_choice.h"
 
 namespace framelet {
 

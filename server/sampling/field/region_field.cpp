@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/error.h"
+#include "server/render/rays_per_sample.h"
 #include "server/sampling/field/view_motion.h"
 
 namespace framelet {

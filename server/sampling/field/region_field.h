@@ -8,10 +8,8 @@
 #include <vector>
 
 #include "server/render/probe.h"
-#include "server/render/rays_per_sample.h"
 #include "server/sampling/field/density_tiling.h"
 #include "server/sampling/model/region_model.h"
-#include "server/sampling/model/sampling_choice.h"
 
 namespace framelet {
 

@@ -30,11 +30,6 @@ bool Mirror::looks_at(MirrorView const& view) const {
     return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
 }
 
-std::size_t Mirror::moment_count() const {
-    return static_cast<std::size_t>(
-        std::ranges::count_if(moments_, [](Moment const& moment) { return moment.number > 0; }));
-}
-
 void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     target_ = view;
     camera_stands_ = moments_[base_].number == 0 || same_camera(moments_[base_].rays, view.rays);

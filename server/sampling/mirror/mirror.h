@@ -67,8 +67,6 @@ public:
     /// Notes that the viewer has evicted these framelets, from the next look on.
     void forget(std::span<SentTile const> framelets);
 
-    std::size_t moment_count() const;
-
 private:
     struct Moment {
         ViewRays rays;

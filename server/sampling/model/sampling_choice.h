@@ -38,6 +38,6 @@ struct SamplingChoice {
 /// more than it saves in that time. `least_level`, `most_level`: levels to choose from. `costs`: what a sample of each
 /// level costs, in the samples that `price` is of.
 SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPrice const& price, int least_level,
-                               int most_level, LevelCosts const& costs = equal_costs);
+                               int most_level, LevelCosts const& costs);
 
 } // namespace framelet

@@ -1,8 +1,9 @@
 #include "server/session/limits/session_memory.h"
 
 #include "protocol/codec/color/reference_picture.h"
+#include "server/sampling/field/region_field.h"
 #include "server/sampling/mirror/mirror.h"
-#include "server/sampling/plan/adaptive_refresh.h"
+#include "server/sampling/model/luma_history.h"
 #include "server/stream/flow/lossy_tiles.h"
 
 namespace framelet {

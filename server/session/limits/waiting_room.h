@@ -29,8 +29,6 @@ public:
     /// Removes a connection, whether it waits or not.
     void leave(std::uint64_t connection) { waiting_.erase(connection); }
 
-    std::size_t size() const { return waiting_.size(); }
-
 private:
     std::vector<std::uint64_t> of_source(std::string const& source) const;
     std::string fullest_source() const;

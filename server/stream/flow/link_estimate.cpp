@@ -75,7 +75,6 @@ LinkState LinkEstimate::state() const {
     LinkState state;
     state.bytes_per_sample = bytes_per_sample_;
     state.delivery_seconds = delivery_seconds_;
-    state.queueing_seconds = queueing_seconds_;
     double const base = base_.least();
     bool const is_answered = std::isfinite(base);
     state.base_seconds = is_answered ? base : 0;
@@ -199,7 +198,6 @@ double LinkEstimate::measure_queue(Flight const& flight, double now, double roun
         waited_.pop_back(); // never the smallest any more
     }
     waited_.push_back({now, seconds});
-    queueing_seconds_ += news * (seconds - queueing_seconds_);
     return waited_.front().seconds;
 }
 

@@ -28,7 +28,6 @@ struct LinkState {
     double delivery_seconds = 0; ///< from sending until a batch has arrived, lately
     double base_seconds = 0; ///< the shortest round trip lately; 0: none is known
     double batch_bytes = 0; ///< most bytes of one batch that still shows soon
-    double queueing_seconds = 0; ///< how long a batch waits for those before it
 };
 
 /// The smallest of the values of the last ten seconds or so.
@@ -110,7 +109,6 @@ private:
     double used_ = 0; ///< bytes sent since then
     double bytes_per_sample_;
     double delivery_seconds_ = 0;
-    double queueing_seconds_ = 0;
 };
 
 } // namespace framelet

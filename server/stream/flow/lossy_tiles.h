@@ -12,8 +12,6 @@ namespace framelet {
 
 class LossyTiles {
 public:
-    LossyTiles() = default;
-
     /// Bytes of memory that it takes once something was sent with loss.
     static std::size_t bytes(ImagePlane const& plane) { return std::size_t{1} << (2 * plane.max_depth()); }
 

@@ -36,7 +36,7 @@ inline constexpr float isolated_tolerances = 4;
 /// The tolerance by which samples are shown off by `tolerated_pixels` while the camera moves so far that what is at
 /// `median_depth` (metres, > 0) moves by 20 pixels, and what deforms moves on for a tenth of a second. Preferred: a
 /// tenth of a pixel, while the camera moves on as fast as it does for a fifth of a second. `speed`: metres a second.
-LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed = 0);
+LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed);
 
 /// Median of the finite depths in the framelets, metres, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);

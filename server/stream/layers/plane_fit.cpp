@@ -1,6 +1,5 @@
 #include "server/stream/layers/plane_fit.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace framelet {

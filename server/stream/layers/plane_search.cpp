@@ -1,6 +1,5 @@
 #include "server/stream/layers/plane_search.h"
 
-#include <algorithm>
 #include <cmath>
 
 namespace framelet {

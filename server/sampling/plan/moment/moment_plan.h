@@ -43,9 +43,6 @@ public:
     void find(Mirror const& mirror, RegionField const& field, MomentBudget const& budget,
               std::vector<RatedPatch>& rated);
 
-    /// Price of the patches found last: the squared error that the last sample takes away, summed over pixels.
-    float price() const { return price_; }
-
 private:
     struct Node {
         float gain = 0, cost = 0; ///< as one tile; cost 0: it may not be one
@@ -68,6 +65,7 @@ private:
     double solve(RegionField const& field, MomentBudget const& budget, float price);
     void collect(RegionField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
 
+    /// Price of the patches found last: the squared error that the last sample takes away, summed over pixels.
     float price_ = 0;
     float gain_ = 0; ///< of what was chosen last
     float mean_detail_ = 0;

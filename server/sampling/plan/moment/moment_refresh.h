@@ -54,7 +54,7 @@ public:
     /// shapes, in order; sets how soon what they show fades, unless nothing is expected to change.
     void note_sent(RenderedMoment const& moment, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
-                   std::span<FrameletShape> shapes, bool expects_change = true);
+                   std::span<FrameletShape> shapes, bool expects_change);
     /// Notes that the viewer no longer holds these.
     void forget(std::span<SentTile const> framelets) { mirror_.forget(framelets); }
     /// Notes that the viewer is told that it holds all of the picture.
