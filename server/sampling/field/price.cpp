@@ -22,7 +22,7 @@ float expected_life(Region const& region, double now, bool all_stands) {
     }
     float const motion = region.model.motion;
     float const passing = motion > 2 / most_life ? 2 / motion : most_life;
-    return std::clamp(std::min(std::max(still, passing), most_life), least_life, most_life);
+    return std::clamp(std::max(still, passing), least_life, most_life);
 }
 
 void choose_all(RegionField const& field, double now, Budget const& budget, float price, Choices& choices) {

@@ -31,10 +31,10 @@ struct Region {
     RegionModel model = unknown_region();
     int level = -1; ///< level of the samples that the viewer holds; -1: none
     float drift = 0; ///< drift since those were rendered
-    TakenSamples taken;
     double rendered = never; ///< when those were rendered, seconds
+    bool supersampled = false; ///< those are means of four rays each
     float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
-    double supersampled = never; ///< when the viewer got it with four rays a sample, seconds
+    TakenSamples taken;
     double changed = never; ///< when it was last seen to be different, seconds
     /// The time at which it was last rendered with nothing to compare with, and might have changed, seconds.
     double suspected = never;

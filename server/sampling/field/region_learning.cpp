@@ -221,7 +221,7 @@ bool learn_patch(RegionField& field, Patch const& patch, std::span<RegionFinding
         if (!known || region.level == level) { // where it is known, what is held is the very picture of then
             region.level = level;
             region.rendered = now;
-            region.supersampled = never;
+            region.supersampled = false;
         }
     }
     return !known;

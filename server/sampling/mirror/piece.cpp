@@ -25,7 +25,7 @@ constexpr float bounded(float inverse_depth) {
 
 /// Side of the parts that a tile of this side is cut into, pixels.
 constexpr int part_side(int tile_side) {
-    return std::clamp(tile_side / 8, 8, 16) < tile_side ? std::clamp(tile_side / 8, 8, 16) : tile_side;
+    return std::min(std::clamp(tile_side / 8, 8, 16), tile_side);
 }
 
 /// Sums over samples of one layer.

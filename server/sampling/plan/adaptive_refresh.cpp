@@ -54,11 +54,11 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
         field_ = RegionField(ImagePlane(state.view.viewport));
         history_.clear();
         moments_ = MomentRefresh(state.view.viewport);
-        price_ = 1e-6f;
+        price_ = first_price;
         still_since_ = input.now;
         scene_moves_ = false;
     } else {
-        double const seconds = std::max(input.now - advanced_, 0.0);
+        double const seconds = std::max(input.now - planned_, 0.0);
         if (strayed_ || !same_picture(*seen_, state)) {
             still_since_ = input.now;
         }
@@ -75,7 +75,7 @@ void AdaptiveRefresh::advance(RefreshInput const& input) {
     }
     seen_ = state;
     strayed_ = false;
-    advanced_ = input.now;
+    planned_ = input.now;
 }
 
 /// Notes when a base begins: with another camera, and after samples that were not moved, whose cameras make no
@@ -129,7 +129,6 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
 }
 
 void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
-    planned_ = input.now;
     cycle_.clear();
     next_ = first_supersampled_ = 0;
     ++cycle_count_;
@@ -161,7 +160,7 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, RefreshPlan& plan) {
 double AdaptiveRefresh::plan_periodic_refreshes(RefreshInput const& input) {
     Budget const budget{input.samples_per_second, input.cycle_seconds, input.delivery_seconds, input.bias,
                         input.limits};
-    select_periodic_refreshes(field_, advanced_, budget, suspects_, cycle_);
+    select_periodic_refreshes(field_, planned_, budget, suspects_, cycle_);
     double tiles = 0;
     for (Patch const& patch : cycle_) {
         tiles += tile_count(patch);
@@ -228,7 +227,7 @@ void AdaptiveRefresh::plan_patches(RefreshInput const& input, double samples) {
                         input.moment ? input.moment->begun : std::numeric_limits<double>::infinity(),
                         still_};
     find_due_errors(field_, budget, due_errors_);
-    price_ = solve_price(field_, advanced_, budget, due_errors_, price_, choices_);
+    price_ = solve_price(field_, planned_, budget, due_errors_, price_, choices_);
     density_.assign(field_.size(), 0);
     for (std::uint32_t const index : field_.visible()) {
         density_[index] = samples_per_pixel(choices_[index].level);
@@ -283,7 +282,7 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
 /// Probes what seems to stand, the neighbours of what moves first.
 void AdaptiveRefresh::plan_probes(double samples, RefreshPlan& plan) {
     auto const most = static_cast<std::size_t>(samples / (probe_cost * static_cast<double>(probes_per_region)));
-    select_probed(field_, choices_, advanced_, most, probe_scratch_, plan.probed);
+    select_probed(field_, choices_, planned_, most, probe_scratch_, plan.probed);
     for (std::uint32_t const index : plan.probed) {
         Region& region = field_[index];
         region.asked = plan.now;

@@ -75,8 +75,9 @@ private:
     void plan_probes(double samples, RefreshPlan& plan);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
 
+    static constexpr float first_price = 1e-6f;
+
     std::optional<ViewState> seen_;
-    double advanced_ = 0; ///< the time that the field stands for
     double still_since_ = 0; ///< when what is to be seen changed last
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     std::optional<Camera> base_camera_; ///< of the last plan, where the viewer moves its samples
@@ -90,8 +91,8 @@ private:
     /// not filled with the first of them (measured).
     float mean_bits_ = 1;
     Choices choices_;
-    float price_ = 1e-6f;
-    double planned_ = never; ///< when the cycle was planned
+    float price_ = first_price;
+    double planned_ = never; ///< when the cycle was planned, seconds: the field is of this time
     std::uint64_t cycle_count_ = 0;
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;

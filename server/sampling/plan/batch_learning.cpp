@@ -48,7 +48,8 @@ void learn_supersampled(RegionField& field, RefreshPlan const& plan) {
             Region& region = field[i];
             region.drift = drift_since(region, plan.now);
             region.level = field.level_of(patch.depth);
-            region.rendered = region.checked = region.supersampled = plan.now;
+            region.rendered = region.checked = plan.now;
+            region.supersampled = true;
         }
     }
 }

@@ -19,7 +19,7 @@ bool is_finest(Region const& region, double still_since) {
 }
 
 bool is_finished(Region const& region, double still_since) {
-    return is_finest(region, still_since) && (region.supersampled >= still_since || region.left <= enough);
+    return is_finest(region, still_since) && (region.supersampled || region.left <= enough);
 }
 
 void select_refinement(RegionField const& field, double samples, UnresolvedRegions& scratch,

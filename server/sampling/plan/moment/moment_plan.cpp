@@ -100,10 +100,9 @@ void MomentPlan::find(Mirror const& mirror, RegionField const& field, MomentBudg
     rated.clear();
     find_gains(mirror, field, budget);
     sum_nodes(field, budget);
-    float const least = std::max(least_price, budget.limits.least_price);
-    float low = least, high = most_price;
-    price_ = least;
-    if (solve(field, budget, least) > budget.samples) {
+    float low = least_price, high = most_price;
+    price_ = least_price;
+    if (solve(field, budget, least_price) > budget.samples) {
         for (int step = 0; step < 18; ++step) {
             float const middle = std::sqrt(low * high);
             (solve(field, budget, middle) > budget.samples ? low : high) = middle;
@@ -176,7 +175,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     // The viewer has what is on its way, or has been rendered of this moment, whatever the mirror makes of it.
     int had = region.taken.level;
     if (region.rendered >= budget.moment_begun) {
-        had = std::max(had, region.level + (region.supersampled >= budget.moment_begun ? 1 : 0));
+        had = std::max(had, region.level + (region.supersampled ? 1 : 0));
     }
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
