@@ -3,13 +3,10 @@
 #include <utility>
 
 #include "server/session/limits/session_memory.h"
+#include "server/session/limits/wall_time.h"
 
 namespace framelet {
 namespace {
-
-double seconds_of(std::chrono::steady_clock::time_point time) {
-    return std::chrono::duration<double>(time.time_since_epoch()).count();
-}
 
 EncodedBatch const& batch_of(std::shared_ptr<Message const> const& message) {
     return std::get<EncodedBatch>(*message);

@@ -155,7 +155,7 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
 /// scene is about to jump, the moment is of what comes after that, which shares nothing with what is held, and waits
 /// with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
-    bool const camera_moves = !(camera_in(least_moment_seconds, turn, scene) == camera_in(0, turn, scene));
+    bool const camera_moves = camera_in(least_moment_seconds, turn, scene) != camera_in(0, turn, scene);
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
     double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
@@ -214,10 +214,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.scene_camera = moving_camera(scene);
     order.shown_from = wanted.moment ? wanted.moment->shown_from : 0;
     order.outdates = wanted.moment && wanted.moment->outdates;
-    order.qp = lossless_qp;
-    if (takes_loss()) {
-        order.qp = choice_.choose(link, sent_share_.value() * rendered, turn.now);
-    }
+    order.qp = takes_loss() ? choice_.choose(link, sent_share_.value() * rendered, turn.now) : lossless_qp;
     order.takes_shapes = takes_shapes();
     order.skips = options_.skips;
     order.still = still;
@@ -229,13 +226,9 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
         }
         return wanted.moment ? Step::wait : Step::nothing; // at rest there will be more to do
     }
-    work.figures = {};
+    set_planned(work);
     work.figures.is_new_cycle = order.plan.is_new_cycle;
     work.figures.regions = viewer_.refresh.field().visible().size();
-    work.figures.framelets = order.plan.tiles.size();
-    work.figures.rays = order.plan.ray_count();
-    work.figures.probes = order.plan.probes.size();
-    set_planned(work);
     return Step::render;
 }
 
@@ -246,9 +239,6 @@ void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& sc
     BatchWork& work = free_work();
     work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, true, true};
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
-    work.figures = {};
-    work.figures.framelets = work.order.plan.tiles.size();
-    work.figures.rays = work.order.plan.ray_count();
     set_planned(work);
 }
 
@@ -258,7 +248,12 @@ BatchWork& FrameletStream::free_work() {
     return works_[used == works_.data() ? 1 : 0];
 }
 
+/// Makes a work, whose order is complete, the one that was planned last.
 void FrameletStream::set_planned(BatchWork& work) {
+    work.figures = {};
+    work.figures.framelets = work.order.plan.tiles.size();
+    work.figures.rays = work.order.plan.ray_count();
+    work.figures.probes = work.order.plan.probes.size();
     earlier_ = planned_;
     planned_ = &work;
 }

@@ -43,15 +43,15 @@ void find_arrivals(RegionField& field, ViewRays const& from, ViewRays const& to)
                 }
             }
         }
-        auto const cell = [side](float pixel, int last) {
+        auto const place = [side](float pixel, int last) {
             return static_cast<int>(std::clamp(std::floor(pixel / side), 0.0f, static_cast<float>(last)));
         };
         if (!(high.x > 0 && high.y > 0 && low.x < static_cast<float>(viewport.width) &&
               low.y < static_cast<float>(viewport.height))) {
             continue;
         }
-        for (int row = cell(low.y, rows); row <= cell(high.y, rows); ++row) {
-            for (int column = cell(low.x, columns); column <= cell(high.x, columns); ++column) {
+        for (int row = place(low.y, rows); row <= place(high.y, rows); ++row) {
+            for (int column = place(low.x, columns); column <= place(high.x, columns); ++column) {
                 Region& region =
                     field[morton_index(static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))];
                 region.arriving = std::max(region.arriving, pixels);

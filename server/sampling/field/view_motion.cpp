@@ -28,8 +28,8 @@ std::optional<Vec2> moved_pixel(ViewRays const& from, ViewRays const& to, Vec2 p
     if (!(scale > 0)) {
         return perspective ? std::nullopt : std::optional(pixel);
     }
-    Vec3 const region = relative / scale - corner;
-    Vec2 const there(glm::dot(region, dx) / glm::dot(dx, dx), glm::dot(region, dy) / glm::dot(dy, dy));
+    Vec3 const from_corner = relative / scale - corner;
+    Vec2 const there(glm::dot(from_corner, dx) / glm::dot(dx, dx), glm::dot(from_corner, dy) / glm::dot(dy, dy));
     return std::isfinite(there.x) && std::isfinite(there.y) ? std::optional(there) : std::nullopt;
 }
 

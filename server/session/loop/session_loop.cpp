@@ -11,6 +11,7 @@
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
+#include "server/session/limits/wall_time.h"
 #include "server/session/loop/contained.h"
 #include "server/session/loop/laps.h"
 #include "server/stream/event_log.h"
@@ -31,10 +32,6 @@ std::size_t thread_count() {
     return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
 }
 
-double seconds_of(WallTime time) {
-    return std::chrono::duration<double>(time.time_since_epoch()).count();
-}
-
 } // namespace
 
 struct SessionLoop::Viewer {
@@ -42,7 +39,6 @@ struct SessionLoop::Viewer {
     std::uint64_t number = 0; ///< number of its first session
     std::unique_ptr<ViewerStream> stream;
     std::vector<StreamEvent> events; ///< scratch
-    std::uint64_t version = 0; ///< of what the viewer asks for
     /// When something was rendered for it last; nothing: it needs no share of the time.
     std::optional<WallTime> rendered;
 };
@@ -218,7 +214,7 @@ std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
 
 bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began) {
     ViewerStream& stream = *viewer.stream;
-    viewer.version = session->take_events(viewer.events);
+    std::uint64_t const version = session->take_events(viewer.events);
     // Asks for the time after the events are taken: else a picture that is complete for the time that was could be
     // reported as complete for one that was set meanwhile.
     ClockState const clock = clock_.state(round_began);
@@ -239,21 +235,20 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     if (log != nullptr) {
         log->add_turn(viewer.number, turn, step);
     }
-    if (step == Step::render) {
-        viewer.rendered = now;
-    } else if (viewer.rendered && now - *viewer.rendered >= sharing_time) {
-        viewer.rendered.reset();
-    }
     if (step != Step::render) {
+        if (viewer.rendered && now - *viewer.rendered >= sharing_time) {
+            viewer.rendered.reset();
+        }
         waits_for_room_ = waits_for_room_ || step == Step::wait;
         if (finish_rendered()) {
             return true;
         }
-        if (step == Step::nothing && stream.is_complete() && session->report(viewer.version, true)) {
+        if (step == Step::nothing && stream.is_complete() && session->report(version, true)) {
             events_.convergence_changed();
         }
         return false;
     }
+    viewer.rendered = now;
     CycleRecord record;
     record.stage_seconds.plan = laps.lap();
     TurnFigures const figures = stream.planned_figures();
@@ -277,7 +272,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     record.stage_seconds.render = laps.lap();
     wait_for_finishing();
     record.stage_seconds.wait = laps.lap();
-    pipeline_->rendered = {session, &viewer, viewer.version, false, false, false, record, turn.now};
+    pipeline_->rendered = {session, &viewer, version, false, false, false, record, turn.now};
     if (thread_count() < many_threads) {
         finish_one(true);
         start_finishing();
