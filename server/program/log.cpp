@@ -17,7 +17,7 @@
 namespace framelet {
 namespace {
 
-/// As 2025-03-01T09:30:00.250Z.
+/// The time in UTC, as in 2025-03-01T09:30:00.250Z.
 std::string time_text(spdlog::log_clock::time_point time) {
     using namespace std::chrono;
     auto const since = floor<milliseconds>(time.time_since_epoch());

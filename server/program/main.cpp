@@ -37,8 +37,8 @@
 namespace framelet {
 namespace {
 
-/// Reads the tokens. Throws InputError where a file is of no use; to find that out only when it is needed could take as
-/// long as the scene does.
+/// Reads the tokens, and tries the certificate and the recording. Throws InputError where a file is of no use; to find
+/// that out only when it is needed could take as long as the scene does.
 void read_files(Options& options) {
     ServerOptions& server = options.server;
     if (!options.token_file.empty()) {

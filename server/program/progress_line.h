@@ -7,8 +7,8 @@
 
 namespace framelet {
 
-/// At most 80 columns: what, a bar, percent, the time since it began and, after the first second, how long it will take
-/// yet if it goes on as it did. `fraction` 0..1, or what is nearest to it.
+/// The line, at most 80 columns: what, a bar, percent, the time since it began and, after the first second, how long it
+/// will take yet if it goes on as it did. `fraction` 0..1, or what is nearest to it.
 std::string progress_line(std::string_view what, double fraction, double seconds);
 
 } // namespace framelet

@@ -43,6 +43,7 @@ public:
     std::shared_ptr<Session> session_left_behind(Hello const& hello);
     /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own.
     void seat(std::shared_ptr<Session> const& session, Hello const& hello, Welcome& answer);
+    /// True where this session may set the scene's clock.
     bool controls(std::uint64_t id) const { return control_.controls(id); }
     /// Sets memory aside, as `SessionMemory::reserve`. Viewers that are away leave their memory to those that are here.
     std::optional<std::string> reserve(std::uint64_t id, Viewport viewport, bool predicts);

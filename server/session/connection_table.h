@@ -20,9 +20,9 @@ namespace framelet {
 struct Connection {
     std::shared_ptr<Session> session;
     std::shared_ptr<FramedStream> stream;
-    std::string source;
+    std::string source; ///< as `source_of` has it
     std::unique_ptr<boost::asio::steady_timer> start; ///< of a delayed start; null: it starts at once
-    bool admitted = false;
+    bool admitted = false; ///< its viewer was let in
     bool was_ended = false; ///< its session had ended at the last heartbeat, and it is here all the same
 };
 
@@ -35,6 +35,7 @@ public:
     void erase(std::uint64_t id);
     std::map<std::uint64_t, Connection> const& all() const { return connections_; }
 
+    /// Sessions of viewers that were let in and have not left.
     std::vector<std::shared_ptr<Session>> open_sessions() const;
     /// Sessions from which something has been waited for too long, and what.
     std::vector<std::pair<std::shared_ptr<Session>, std::string>>

@@ -130,9 +130,9 @@ private:
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
     std::size_t waiting_evicted_ = 0; ///< messages and framelets of `Evicted` among these
     std::uint64_t evicted_ = 0; ///< `Evicted` messages that have come, in sessions before this one too
-    std::uint64_t version_ = 0;
-    std::uint64_t last_batch_ = 0;
-    std::uint64_t last_ack_ = 0;
+    std::uint64_t version_ = 0; ///< of what the viewer asks for, as `take_events` returns it
+    std::uint64_t last_batch_ = 0; ///< newest batch that was sent; 0: none
+    std::uint64_t last_ack_ = 0; ///< newest batch that the viewer has answered; 0: none
     std::deque<std::shared_ptr<Message const>> kept_; ///< batches after `last_ack_`, in order
     std::size_t kept_bytes_ = 0;
     std::uint64_t converged_version_ = 0; ///< for which there is nothing left to refine; 0: none

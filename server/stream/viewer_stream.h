@@ -41,9 +41,9 @@ struct TurnFigures {
     std::uint64_t framelets = 0; ///< framelets that are rendered
     std::uint64_t rays = 0; ///< through samples
     std::uint64_t probes = 0;
-    std::uint64_t segments = 0; ///< rays of samples, shadow and mirror rays included
-    std::uint64_t probe_segments = 0;
-    std::uint64_t learnt_samples = 0;
+    std::uint64_t segments = 0; ///< rays of samples, with their shadow and mirror rays, and visibility rays
+    std::uint64_t probe_segments = 0; ///< rays of probes, likewise
+    std::uint64_t learnt_samples = 0; ///< that were learnt from
     std::uint64_t exact_samples = 0, lossy_samples = 0, shaped_samples = 0; ///< that are sent
 };
 

@@ -24,9 +24,10 @@ constexpr double tile_count(Patch const& patch) {
     return static_cast<double>(std::uint64_t{1} << (2 * (patch.depth - patch.node.depth())));
 }
 
-/// Quadtree depth of the elements (regions) of a field: the depth at which tiles have one sample a pixel, but at most
-/// `most_field_depth`, so that what is computed for each element does not grow with the picture.
+/// The largest quadtree depth of a field's elements (regions), so that what is computed for each of them does not grow
+/// with the picture.
 inline constexpr int most_field_depth = 6;
+/// Quadtree depth of a field's elements: the depth at which tiles have one sample a pixel, at most `most_field_depth`.
 inline int field_depth(ImagePlane const& plane) {
     return plane.pixel_depth() < most_field_depth ? plane.pixel_depth() : most_field_depth;
 }

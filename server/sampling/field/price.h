@@ -17,7 +17,7 @@ namespace framelet {
 /// The bounds of what may be chosen and used. The evaluation narrows them, to see what each part is worth.
 struct ResponseLimits {
     int least_level = 0, most_level = sampling_levels - 1; ///< levels that may be chosen for a region
-    float least_price = 1e-12f, most_price = 1e3f;
+    float least_price = 1e-12f, most_price = 1e3f; ///< as `SamplingPrice::price`
     double periodic_share = 0.05; ///< share of the samples for periodic refreshes, which look at all of the picture
     double probe_share = 0.08; ///< share of the samples for probes of what seems to stand, while the scene moves
     // The following apply to moments, for a viewer that moves its samples:

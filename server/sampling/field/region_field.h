@@ -13,6 +13,7 @@
 
 namespace framelet {
 
+/// A time before any other, seconds.
 inline constexpr double never = -std::numeric_limits<double>::infinity();
 
 inline constexpr std::size_t probes_per_region = 16;
@@ -59,6 +60,7 @@ public:
     int depth() const { return depth_; }
     /// Levels that tiles of this plane can have: [least_level(), sampling_levels).
     int least_level() const { return plane_.min_depth() - plane_.pixel_depth() + pixel_level; }
+    /// Level of tiles of a quadtree depth, and the depth of tiles of a level.
     int level_of(int tile_depth) const { return tile_depth - plane_.pixel_depth() + pixel_level; }
     int depth_of(int level) const { return level + plane_.pixel_depth() - pixel_level; }
 
@@ -67,12 +69,14 @@ public:
     Region& operator[](std::uint32_t index) { return regions_[index]; }
     Region const& operator[](std::uint32_t index) const { return regions_[index]; }
     std::size_t size() const { return regions_.size(); }
-    /// Pixels along a side of a region; `pixels_of` says how many pixels of one lie inside the viewport.
+    /// Pixels along a side of a region.
     int region_side() const { return plane_.side() >> depth_; }
+    /// Number of pixels of a region that lie in the viewport.
+    float pixels_of(std::uint32_t index) const { return pixels_[index]; }
+    /// The square of a region, pixels, also beyond the viewport.
     PixelRect rect_of(std::uint32_t index) const;
     /// The patch of one region alone, with tiles of a depth that is no less than the field's.
     Patch patch_of(std::uint32_t index, int tile_depth) const { return {{(1u << (2 * depth_)) + index}, tile_depth}; }
-    float pixels_of(std::uint32_t index) const { return pixels_[index]; }
 
     /// Indices of the regions under a node.
     struct Range {

@@ -20,7 +20,8 @@ struct Cell {
     float inverse_depth = -1; ///< of the surface that shows, in the middle of the cell, 1 / metres; -1: none
     float worn = 0; ///< worn spacing of the piece that shows, pixels; 0 where nothing shows
     float detail = 0; ///< of the piece that shows (`Piece::detail`), in this picture's pixels
-    float spacing = 0, decorrelation = 0; ///< of the piece that shows
+    float spacing = 0; ///< of the samples of the piece that shows, as they were rendered, pixels
+    float decorrelation = 0; ///< of the piece that shows, pixels of spacing a second
     std::uint32_t piece = 0; ///< index of that piece among those of its moment
     std::uint16_t covered = 0; ///< by anything: a bit for each pixel, row by row
     std::uint8_t moment = 0; ///< slot of the moment of that piece

@@ -34,11 +34,11 @@ public:
     Piece const& piece_of(Cell const& cell) const { return moments_[cell.moment].pieces[cell.piece]; }
     /// Position of the middle of that piece in the picture looked at, pixels; `scale_of`: how much larger it is there
     /// than it was rendered; `time_of`: the scene time that it was rendered for.
+    SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     Vec2 position_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
     /// The luma that a cell shows at a position in its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
-    SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     /// True where a new framelet takes the place of what shows, be it better or not: what shows is of the base of the
     /// camera that is looked through, or out of date.
     bool gives_way(Cell const& cell) const {

@@ -39,13 +39,13 @@ struct ReprojectedPiece {
     bool is_in_picture() const { return inverse_depth >= 0; }
 };
 
-/// Takes pixels of one body to the other picture.
+/// Takes pixels of one body to the other picture, as `ViewTransform` does.
 struct BodyTransform {
     std::uint64_t stamp = 0; ///< of the call and the scene time for which it holds
     Mat3 far{1};
     Vec3 parallax{0};
     std::array<Vec3, 3> carried{}; ///< parallax of a metre along each axis of the world
-    float lens = 1;
+    float lens = 1; ///< how much larger the other camera's lens shows things
     bool is_still = false; ///< pixels stay where they are
 };
 

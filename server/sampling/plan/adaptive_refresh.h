@@ -78,10 +78,10 @@ private:
     static constexpr float first_price = 1e-6f;
 
     std::optional<ViewState> seen_;
-    double still_since_ = 0; ///< when what is to be seen changed last
+    double still_since_ = 0; ///< when what is to be seen changed last, seconds
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     std::optional<Camera> base_camera_; ///< of the last plan, where the viewer moves its samples
-    double base_begun_ = never; ///< when the first plan of that camera was made since there was another one
+    double base_begun_ = never; ///< when its first plan was made since there was another camera, seconds
     bool scene_moves_ = false;
     bool still_ = false; ///< what is to be seen is what the last plan was for
     RegionField field_;

@@ -28,7 +28,7 @@ struct RefreshInput {
     double rendered_per_second = 0;
     float cycle_seconds = least_cycle_seconds; ///< length of a cycle, after which another one is planned
     float delivery_seconds = 0; ///< from the end of a batch's rendering until it shows
-    float bias = 0;
+    float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     /// Motions of bodies, as a viewer knows them that moves what it holds along with them; null for one that does not.
     BodyMotions const* motions = nullptr;
     /// The largest number of framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all

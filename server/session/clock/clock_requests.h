@@ -26,7 +26,7 @@ public:
         return is_first && waiting_.set != 0;
     }
 
-    /// When what waits is to be applied; a time that is past: at once.
+    /// The time at which what waits is to be applied; one that is past: at once.
     WallTime due() const { return taken_ + interval; }
 
     /// Takes all that has come since the last time, as one request.

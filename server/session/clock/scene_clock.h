@@ -13,6 +13,7 @@ namespace framelet {
 /// thread.
 class SceneClock {
 public:
+    /// The clock stands at 0 at `now`, and goes on from there if it plays.
     SceneClock(bool playing, WallTime now);
 
     /// State of the clock at a time. What was set last begins when it was set, for those who ask of a time before that,

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t megabyte = 1'000'000;
 
-/// Of any picture: batches that are being made, and what grows with the scene's bodies.
+/// Bytes that any picture takes: batches that are being made, and what grows with the scene's bodies.
 constexpr std::size_t least_bytes = 4 * megabyte;
 /// Pieces for each cell of the picture, over all moments, and as many again for samples on their way to becoming some.
 /// They are a measured bound of scenes with much detail: of a picture at rest, and of a flight that is rendered whole

@@ -28,6 +28,7 @@ public:
     /// Sets aside what the session takes with a picture of this size, or says in one line why not. What it has from a
     /// larger picture stays its own until it ends: memory is used again rather than given back.
     std::optional<std::string> reserve(std::uint64_t session, Viewport viewport, bool predicts);
+    /// Gives back what the session has, if it has any.
     void release(std::uint64_t session);
     /// Passes what session `from` has on to session `to`, which has nothing yet.
     void pass(std::uint64_t from, std::uint64_t to);

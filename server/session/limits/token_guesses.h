@@ -21,7 +21,9 @@ public:
     /// Most sources that are remembered: of more the one that was wrong longest ago is forgotten.
     static constexpr std::size_t most_sources = 4096;
 
+    /// Notes that somebody at `source` has said a wrong token.
     void note_wrong(std::string const& source, WallTime now);
+    /// Time that the next connection from `source` has to wait; 0 where no wrong token is remembered of it.
     WallTime::duration delay(std::string const& source, WallTime now) const;
 
 private:

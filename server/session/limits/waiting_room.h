@@ -11,9 +11,9 @@
 
 namespace framelet {
 
-/// Random early drop, as OpenSSH's MaxStartups, but what is dropped is one that waits and not the one that comes: a
-/// viewer that knows the token waits for a moment, a connection that never says hello until its time is over, so that
-/// the latter are hit.
+/// Drops early and at random, as OpenSSH's MaxStartups does, but one that waits and not the one that comes: a viewer
+/// that knows the token waits for a moment, a connection that never says hello until its time is over, so that the
+/// latter are hit.
 class WaitingRoom {
 public:
     static constexpr std::size_t most_of_a_source = 16;

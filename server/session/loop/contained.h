@@ -16,6 +16,7 @@ inline bool may_come_again(std::exception const& error) {
     return dynamic_cast<SceneUnposed const*>(&error) != nullptr;
 }
 
+/// The line by which the viewer and the log are told why its session ends.
 inline std::string failure_line(std::exception const& error) {
     if (may_come_again(error)) {
         return "the server has not enough memory left for its scene at the moment: try again";
@@ -34,6 +35,7 @@ inline void end_in_need(Session& session, bool again) {
     }
 }
 
+/// Does `work`, which is for this session. False where that threw: the session has ended then.
 template <typename Work>
 bool contain(Session& session, Work const& work) {
     try {

@@ -46,9 +46,9 @@ private:
     void write(Entry const& entry);
 
     std::filesystem::path const folder_;
-    double const picture_period_;
+    double const picture_period_; ///< seconds
     std::ofstream lines_;
-    std::optional<double> start_;
+    std::optional<double> start_; ///< when the first record came, seconds
     std::map<std::uint64_t, double> next_picture_; ///< by session, seconds
 
     std::mutex mutex_; // guards what follows

@@ -10,7 +10,7 @@
 
 namespace framelet {
 
-/// To be used by one thread, but for `wake` and `samples_per_second`, which the loop's own may call as well, and for
+/// One thread may use it, but for `wake` and `samples_per_second`, which the loop's own may call as well, and for
 /// `add_figures`, which any may.
 class LoopThread {
 public:

@@ -25,7 +25,7 @@ constexpr std::size_t many_threads = 5;
 /// A viewer that took nothing in its turns for so long leaves its share of the time to the others.
 constexpr std::chrono::milliseconds sharing_time{250};
 constexpr std::chrono::milliseconds short_pause{5};
-/// Between two attempts to build a scene for which memory was missing while nobody has a turn.
+/// Time between two attempts to build a scene for which memory was missing, while nobody has a turn.
 constexpr std::chrono::seconds scene_pause{1};
 
 std::size_t thread_count() {
@@ -53,7 +53,7 @@ struct SessionLoop::Pipeline {
         bool sends = false; ///< once it is learnt
         bool complete = false; ///< likewise: with it the viewer's picture is complete
         CycleRecord record;
-        double now = 0; ///< when it was planned
+        double now = 0; ///< when it was planned, seconds
     };
     std::optional<Rendered> rendered; ///< the batch that was rendered last, until it is finished
     tbb::task_group finishing;

@@ -48,6 +48,7 @@ public:
     /// Serves until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on
     /// after that.
     void run();
+    /// Ends `run`. May be called from any thread.
     void stop();
     /// Tells the loop that something changed that may be worth a turn. May be called from any thread.
     void wake();
@@ -55,8 +56,8 @@ public:
     /// Rays a second that it would render with all its time, as learnt, for the status message. May be called from any
     /// thread.
     double samples_per_second() const { return samples_per_second_; }
-    /// Likewise, since the loop's beginning: how many rays were rendered for framelets, and the seconds in which there
-    /// was something to do.
+    /// How many rays have been rendered for framelets since the loop's beginning, and the seconds in which there was
+    /// something to do. May be called from any thread.
     double rays() const { return rays_; }
     double busy_seconds() const { return busy_seconds_; }
     /// False while there is no memory for the scene. It is built again as soon as there is some.

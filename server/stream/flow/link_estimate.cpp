@@ -38,6 +38,7 @@ constexpr double slack_seconds = 0.01;
 /// The largest size of a batch, as seconds on the link or as a share of the window, the last one while the window is
 /// being found.
 constexpr double batch_seconds = 0.01, batch_share = 0.125, first_batch_share = 0.25;
+/// Share of the window that counts as all of it while the window is being found.
 constexpr double first_used_share = 0.2;
 /// Seconds over which the measured rate is a mean, and the most that one batch counts for: a stall is no rate.
 constexpr double rate_memory = 0.1, most_weight = 0.1;

@@ -30,7 +30,7 @@ struct LinkState {
     double batch_bytes = 0; ///< most bytes of one batch that still shows soon
 };
 
-/// The smallest of the values of the last ten seconds or so.
+/// The smallest of the values of the last ten seconds or so. `now`: seconds.
 class WindowedMinimum {
 public:
     void add(double now, double value);
@@ -73,7 +73,7 @@ private:
     struct Flight {
         double samples = 0;
         double bytes = 0;
-        std::optional<double> sent;
+        std::optional<double> sent; ///< when it was handed to the socket, seconds; nothing: not yet
     };
     struct Waited {
         double when = 0, seconds = 0;
@@ -91,9 +91,9 @@ private:
     bool was_full_ = false; ///< the window was full, as long as it is being found
 
     WindowedMinimum base_; ///< round trips, seconds
-    WindowedMinimum base_way_; ///< differences of arrival by the viewer's clock and sending by ours
-    std::optional<double> last_arrived_;
-    bool has_viewer_clock_ = false;
+    WindowedMinimum base_way_; ///< arrival by the viewer's clock less sending by ours, seconds
+    std::optional<double> last_arrived_; ///< when the last batch had arrived, by the clock that says so, seconds
+    bool has_viewer_clock_ = false; ///< that is the viewer's; else ours, by which the answer came
     std::deque<Waited> waited_; ///< how long batches have waited lately, seconds
     double busy_bytes_ = 0, busy_seconds_ = 0; ///< while the link was busy, older ones counting less
 

@@ -17,7 +17,8 @@ inline constexpr std::uint8_t most_loss = 24;
 /// several a sample, and into what the viewer has already.
 class SentShare {
 public:
-    /// `rays_per_second`: how many are rendered lately, > 0.
+    /// Takes in how many rays were rendered and how many samples sent of them. `rays_per_second`: how many are rendered
+    /// lately, > 0.
     void add(double rays, double sent_samples, double rays_per_second);
     double value() const { return value_; }
 
@@ -28,9 +29,9 @@ private:
 /// Chooses the QP step by step, so that one odd measurement does not show.
 class QpChoice {
 public:
-    /// Returns the QP of the next batch. `samples_per_second`: what would be sent if the link took it. 0 (exact)
-    /// wherever the link takes all of that; but within the first half second, when little is known of the link, only
-    /// where there is hardly one.
+    /// Returns the QP of the next batch. `samples_per_second`: what would be sent if the link took it; `now`: seconds,
+    /// steady. 0 (exact) wherever the link takes all of that; but within the first half second, when little is known of
+    /// the link, only where there is hardly one.
     std::uint8_t choose(LinkState const& link, double samples_per_second, double now);
 
 private:

@@ -26,7 +26,7 @@ struct MomentBudget {
     double samples = 0; ///< most samples that the patches together may cost
     ResponseLimits limits{};
     std::span<LevelCosts const> costs{}; ///< as of `Budget`
-    double moment_begun = 0; ///< what has been rendered since then is of this moment
+    double moment_begun = 0; ///< seconds; what has been rendered since then is of this moment
     double overhead = 0; ///< samples that a plan costs besides, be it short or long
     float rays = 1; ///< rays that there is time for, for each of `samples`; above 1 where the link is scarce
 };

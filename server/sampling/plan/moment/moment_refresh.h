@@ -63,7 +63,7 @@ public:
 private:
     Mirror mirror_;
     MomentPlan plan_;
-    double looked_ = never; ///< when the moment began at which the mirror looks
+    double looked_ = never; ///< when the moment began at which the mirror looks, seconds
     std::uint32_t looks_taken_ = 0;
     bool is_checked_ = false; ///< more is known of the moment than when it was planned
     std::vector<Piece> pieces_; ///< scratch
