@@ -23,17 +23,15 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
 }
 
 bool MomentChoice::observe(ViewState const& present, double now, bool viewer_moves_samples) {
-    bool const was_resting = rests_;
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
     }
-    rests_ = now - changed_ > rest_seconds;
     last_ = present;
-    if (!viewer_moves_samples || rests_) {
+    if (!viewer_moves_samples || now - changed_ > rest_seconds) {
         held_.reset();
         return false;
     }
-    return was_resting || !goes_on(present, now);
+    return !goes_on(present, now);
 }
 
 } // namespace framelet

@@ -39,7 +39,6 @@ private:
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
     double changed_ = 0; ///< when `last_` was last another one, seconds
-    bool rests_ = false; ///< `last_` had been the same for long when it was seen
 };
 
 } // namespace framelet

@@ -48,7 +48,7 @@ struct Difference {
     float luma = 0;
     float chance = 0; ///< its variance where nothing has changed; 0: not known
 
-    bool beyond(float deviations) const { return luma * luma > deviations * deviations * chance; }
+    bool beyond_chance() const { return luma * luma > doubt * doubt * chance; }
 };
 
 /// Variance of the luma by which two looks at one surface differ by chance: the detail between the samples of both
@@ -122,7 +122,7 @@ std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> p
                 around.chance += differences[static_cast<std::size_t>(i)].chance;
             }
         }
-        if (own.chance > 0 && (own.beyond(doubt) || around.beyond(doubt))) {
+        if (own.chance > 0 && (own.beyond_chance() || around.beyond_chance())) {
             faults.push_back({.at = probe.position, .side = spacing, .stale = own.luma * own.luma});
         }
     }

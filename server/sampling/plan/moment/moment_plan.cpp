@@ -100,34 +100,32 @@ void MomentPlan::find(Mirror const& mirror, RegionField const& field, MomentBudg
     rated.clear();
     find_gains(mirror, field, budget);
     sum_nodes(field, budget);
-    float low = least_price, high = most_price;
-    price_ = least_price;
+    float low = least_price, high = most_price, price = least_price;
     if (solve(field, budget, least_price) > budget.samples) {
         for (int step = 0; step < 18; ++step) {
             float const middle = std::sqrt(low * high);
             (solve(field, budget, middle) > budget.samples ? low : high) = middle;
         }
-        price_ = high;
+        price = high;
         if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
-            price_ = low;
+            price = low;
             solve(field, budget, low);
         }
     }
     if (budget.limits.coarse_first && stale_ > 0.5f * wrong_) {
-        choose_horizon(field, budget);
+        choose_horizon(field, budget, price);
     }
     collect(field, 0, 0, rated);
 }
 
-/// Chooses among dearer prices too the one whose patches gain most a second, where each plan takes `overhead` samples
-/// besides: what gains much for few samples shows before what those lack is refined.
-void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& budget) {
+/// Chooses among prices from `least` up the one whose patches gain most a second, where each plan takes `overhead`
+/// samples besides: what gains much for few samples shows before what those lack is refined.
+void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& budget, float least) {
     constexpr int most_steps = 12;
-    float const first = price_;
     float best_rate = -1;
-    float best = first;
+    float best = least;
     for (int step = 0; step <= most_steps; ++step) {
-        float const price = std::ldexp(first, step);
+        float const price = std::ldexp(least, step);
         auto const spent = static_cast<float>(solve(field, budget, price));
         float const rate = gain_ / (spent + static_cast<float>(budget.overhead));
         if (rate > best_rate) {
@@ -135,7 +133,6 @@ void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& bu
             best = price;
         }
     }
-    price_ = best;
     solve(field, budget, best);
 }
 

@@ -61,12 +61,10 @@ private:
     void add_detail(Mirror const& mirror, RegionField const& field, std::uint32_t index);
     void add_gains(Mirror const& mirror, RegionField const& field, std::uint32_t index, MomentBudget const& budget);
     void sum_nodes(RegionField const& field, MomentBudget const& budget);
-    void choose_horizon(RegionField const& field, MomentBudget const& budget);
+    void choose_horizon(RegionField const& field, MomentBudget const& budget, float least);
     double solve(RegionField const& field, MomentBudget const& budget, float price);
     void collect(RegionField const& field, int depth, std::uint32_t index, std::vector<RatedPatch>& rated) const;
 
-    /// Price of the patches found last: the squared error that the last sample takes away, summed over pixels.
-    float price_ = 0;
     float gain_ = 0; ///< of what was chosen last
     float mean_detail_ = 0;
     float stale_ = 0, wrong_ = 0; ///< of all leaves
