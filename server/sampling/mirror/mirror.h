@@ -23,8 +23,7 @@ public:
     Viewport viewport() const { return viewport_; }
     int columns() const { return columns_; }
     int rows() const { return rows_; }
-    /// Cells of the picture that was looked at last, row by row.
-    std::span<Cell const> cells() const { return cells_; }
+    /// A cell of the picture that was looked at last.
     Cell const& cell(int column, int row) const { return cells_[index_of(column, row)]; }
     /// Pixels of a cell that lie in the viewport.
     int pixels_of(int column, int row) const {

@@ -18,6 +18,8 @@ constexpr float most_inverse_depth = 1e6f;
 constexpr float least_detail = 1e-6f;
 /// Weight of the whole framelet's detail in that of a piece, which has few samples to tell it by.
 constexpr float common_share = 0.25f;
+/// Inverse depths of one surface differ by less than this share of the greater one.
+constexpr float surface_tolerance = 0.05f;
 
 constexpr float bounded(float inverse_depth) {
     return inverse_depth >= 0 ? std::min(inverse_depth, most_inverse_depth) : 0; // NaN becomes 0

@@ -36,9 +36,6 @@ struct Piece {
     SentTile of; ///< the framelet that it is part of
 };
 
-/// Inverse depths of one surface differ by less than this share of the greater one.
-inline constexpr float surface_tolerance = 0.05f;
-
 /// Appends the pieces of a framelet of a scene time and a batch: for each layer, squares of 4 .. 16 pixels or what of
 /// them lies on it; the outliers of a square are split in a near and a far part. `decorrelation` stays 0. All
 /// numbers are finite where those of the shape are.

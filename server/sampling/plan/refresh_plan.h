@@ -50,7 +50,7 @@ struct RefreshPlan {
     double now = 0; ///< when it was made, seconds
     double still_since = 0; ///< when anything moved last, seconds
     /// Time, seconds, since which a viewer that moves its samples has seen this camera and no other: what it was sent
-    /// before, it has moved away. `never`: it shows all where it was rendered.
+    /// before, it has moved away. `never`: it has moved nothing yet.
     double base_begun = never;
     Viewport viewport;
     double moment_begun = 0; ///< when what is rendered was the present, seconds
