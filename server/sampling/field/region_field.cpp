@@ -10,6 +10,8 @@
 namespace framelet {
 namespace {
 
+/// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
+constexpr float drift_per_pixel = 0.5f;
 constexpr float most_drift = 64;
 constexpr float most_displacement = most_drift / drift_per_pixel;
 
@@ -58,6 +60,11 @@ void find_arrivals(RegionField& field, ViewRays const& from, ViewRays const& to)
             }
         }
     }
+}
+
+/// Level that a patch shows with so many rays a sample: means of four are as good as samples of the next finer level.
+int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample) {
+    return std::min(field.level_of(patch.depth) + (rays_per_sample == single_ray ? 0 : 1), sampling_levels - 1);
 }
 
 } // namespace
@@ -121,10 +128,6 @@ void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool
             region.model.motion = more / seconds;
         }
     }
-}
-
-int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample) {
-    return std::min(field.level_of(patch.depth) + (rays_per_sample == single_ray ? 0 : 1), sampling_levels - 1);
 }
 
 void take(RegionField& field, Patch const& patch, double now, int rays_per_sample) {

@@ -18,9 +18,6 @@ inline constexpr double never = -std::numeric_limits<double>::infinity();
 
 inline constexpr std::size_t probes_per_region = 16;
 
-/// Drift of one pixel of displacement: detail of a pixel is elsewhere after two.
-inline constexpr float drift_per_pixel = 0.5f;
-
 /// Samples that have been taken to be rendered and are not learnt yet.
 struct TakenSamples {
     int level = -1; ///< -1: nothing
@@ -103,8 +100,6 @@ inline constexpr float bare_error = 0.25f;
 /// move as well. A region drifts as it was found to, more where the camera has become faster, less where slower: by as
 /// much as what it shows is carried away, or as what comes there instead.
 void drift_on(RegionField& field, ViewRays const& from, ViewRays const& to, bool moving, float seconds);
-/// Level that a patch shows with so many rays a sample: means of four are as good as samples of the next finer level.
-int shown_level(RegionField const& field, Patch const& patch, int rays_per_sample);
 
 /// Notes that a patch has been taken to be rendered, with so many rays a sample.
 void take(RegionField& field, Patch const& patch, double now, int rays_per_sample);

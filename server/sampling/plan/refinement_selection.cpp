@@ -12,11 +12,13 @@ namespace {
 /// Mean squared error of the finest samples, as modelled, above which they are not enough of a still picture.
 constexpr float enough = 5e-5f;
 
-} // namespace
-
+/// True where the viewer holds the finest samples of the region, of a picture that stands since `still_since`, as far
+/// as is learnt.
 bool is_finest(Region const& region, double still_since) {
     return region.level == sampling_levels - 1 && region.rendered >= still_since;
 }
+
+} // namespace
 
 bool is_finished(Region const& region, double still_since) {
     return is_finest(region, still_since) && (region.supersampled || region.left <= enough);

@@ -9,10 +9,8 @@
 
 namespace framelet {
 
-/// True where the viewer holds the finest samples of the region, of a picture that stands since `still_since`, as far
-/// as is learnt.
-bool is_finest(Region const& region, double still_since);
-/// True where those are enough, or the viewer got them with four rays each as well.
+/// True where the viewer holds the finest samples of the region, of a picture that stands since `still_since`
+/// (seconds), as far as is learnt, and these are enough, or are means of four rays.
 bool is_finished(Region const& region, double still_since);
 
 /// Error and index of regions: scratch.

@@ -8,10 +8,8 @@ namespace framelet {
 /// State of what is to be seen. The picture on screen is worth refining for as long as this stays the same.
 struct ViewState {
     NumberedView view;
-    float exposure = 1;
+    float exposure = 1; ///< factor on radiance
     SceneTime scene_time = 0; ///< 0 where nothing moves
-
-    bool operator==(ViewState const&) const = default;
 };
 
 /// The moment that is rendered for a while instead of the present: a viewer that moves what it holds loses little by
