@@ -5,10 +5,10 @@
 
 namespace framelet {
 
-/// Prints to stderr; nothing when `quiet` or where stderr is no terminal.
+/// Makes a progress that draws a line on stderr; nothing when `quiet` or where stderr is no terminal.
 Progress make_progress_bar(bool quiet);
 
-/// Prints to stdout a line "loading PERCENT% STAGE" for each percent, for who started this program.
+/// Makes one that prints to stdout a line "loading PERCENT% STAGE" for each percent, for who started this program.
 Progress make_progress_lines();
 
 } // namespace framelet

@@ -24,6 +24,7 @@ constexpr int block_order(int morton) {
     return (morton % block_samples) * grid_blocks + morton / block_samples;
 }
 
+/// Puts values of samples, which are in Morton order, into block order.
 void to_block_order(std::array<float, framelet_samples> const& morton, GridFloats& out);
 
 /// Column and row of the sample at a position in block order, from the middle of the grid: -7.5 .. 7.5.

@@ -33,8 +33,10 @@ public:
     explicit MomentRefresh(Viewport viewport = {}) : mirror_(viewport) {}
 
     Mirror const& mirror() const { return mirror_; }
-    /// False when another moment has begun, or more is known of this one than when a plan was found last.
+    /// False when another moment has begun, or more is known of this one than when a plan was found last. Moments are
+    /// told by when they began, seconds.
     bool is_planned(double moment_begun) const { return looked_ == moment_begun && !is_checked_; }
+    /// True while the mirror looks at the moment that began then.
     bool looks_at(double moment_begun) const { return looked_ == moment_begun; }
 
     /// Finds what the viewer shows of a moment that begins, and where that is to be checked, by rays and by probes, for
