@@ -75,8 +75,9 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
         Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
                               : import_assimp(file, folder, budget, report, is_checked);
         finish_scene(scene, budget, report);
-        if (scene.name.empty()) {
-            scene.name = file.stem().string();
+        scene.name = one_line(scene.name.empty() ? file.stem().string() : scene.name);
+        for (AnimationClip& clip : scene.clips) {
+            clip.name = one_line(clip.name);
         }
         scene.warnings = condensed(scene.warnings);
         scene.files = folder.asked_for();

@@ -224,6 +224,47 @@ TEST(BadScene, PicturesAreCountedBeforeTheyAreDecoded) {
                  "more than 1 MB", with_megabytes(1));
 }
 
+TEST(BadScene, PicturesMadeOfTwoAreCounted) {
+    TemporaryFolder const folder;
+    write_png(folder.path() / "large.png", Picture(600, 600)); // 1.4 MB of pixels, and as much with another's alpha
+    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\nmap_d large.png\n");
+    auto const file =
+        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    EXPECT_EQ(import_scene(file, {}, with_megabytes(4)).images.size(), 2u);
+    expect_error(file, "more than 2 MB", with_megabytes(2));
+}
+
+TEST(BadScene, ObjectsAndListsOfJsonAreCounted) {
+    TemporaryFolder const folder;
+    auto const file_with = [&](std::string const& name, std::string const& element, std::string const& after) {
+        std::string list = element;
+        for (int i = 1; i < 30'000; ++i) {
+            list += "," + element;
+        }
+        return folder.write("a.gltf", R"({"asset":{"version":"2.0"},")" + name + "\":[" + list + "]" + after + "}");
+    };
+    expect_error(file_with("materials", "{}", ""), "more than 16 MB", with_megabytes(16));
+    expect_error(file_with("nodes", "{}", ""), "more than 16 MB", with_megabytes(16));
+    expect_error(file_with(R"(skins":[{"joints)", "0", "}]"), "more than 1 MB", with_megabytes(1));
+}
+
+TEST(BadScene, TheSceneFileItselfIsCounted) {
+    TemporaryFolder const folder;
+    std::string const text = triangle_writer().json(one_mesh(R"("attributes":{"POSITION":0})"));
+    auto const file = folder.write("a.gltf", text + std::string(3 << 20, ' '));
+    EXPECT_NO_THROW(import_scene(file, {}, with_megabytes(4)));
+    expect_error(file, "more than 2 MB", with_megabytes(2));
+}
+
+TEST(BadScene, NamesAreOneLine) {
+    TemporaryFolder const folder;
+    std::string const text = triangle_writer().json(one_mesh(R"("attributes":{"POSITION":0})"));
+    std::string named = text;
+    named.replace(named.find("\"scenes\":[{"), 11, R"("scenes":[{"name":"a\nb\u001b[2J",)");
+    Scene const scene = import_scene(folder.write("a.gltf", named));
+    EXPECT_EQ(scene.name.find_first_of("\n\x1b"), std::string::npos) << scene.name;
+}
+
 /// Readers of such files take memory for the picture as they open them.
 TEST(BadScene, HeadersOfLargePicturesTakeNoMemory) {
     TemporaryFolder const folder;

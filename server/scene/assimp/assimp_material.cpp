@@ -168,7 +168,7 @@ Index image_of(Scene const& scene, TextureUse const& use) {
 }
 
 /// Moves a separate opacity map into the alpha of the base colour, where glTF materials have it.
-void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity,
+void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity, ImportBudget& budget,
                    std::map<std::pair<Index, Index>, Index>& merged) {
     Index const mask = image_of(scene, opacity);
     if (mask == none || !scene.images[static_cast<std::size_t>(mask)]) {
@@ -177,9 +177,10 @@ void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity,
     Index const base = image_of(scene, material.base_color_texture);
     auto const [found, added] = merged.try_emplace({base, mask}, static_cast<Index>(scene.images.size()));
     Picture const* const color = base == none ? nullptr : scene.images[static_cast<std::size_t>(base)].get();
-    if (added) {
-        scene.images.push_back(
-            std::make_shared<Picture const>(with_opacity(color, *scene.images[static_cast<std::size_t>(mask)])));
+    if (added) { // 40 pictures of each kind make 1600 of both
+        Picture const& alpha = *scene.images[static_cast<std::size_t>(mask)];
+        budget.reserve((color == nullptr ? alpha : *color).rgba.size(), 1);
+        scene.images.push_back(std::make_shared<Picture const>(with_opacity(color, alpha)));
     }
     Texture texture =
         scene.textures[static_cast<std::size_t>(base == none ? opacity.texture : material.base_color_texture.texture)];
@@ -217,7 +218,7 @@ void import_assimp_materials(aiScene const& from, SceneFolder const& folder, Imp
                                      "' holds heights, not normals; shown without it");
             material.normal_texture = {};
         }
-        apply_opacity(scene, material, opacity[i], merged);
+        apply_opacity(scene, material, opacity[i], budget, merged);
     }
 }
 

@@ -177,15 +177,23 @@ void check_buffer_views(Json const& accessors, Json const& meshes) {
     }
 }
 
+/// Bytes that are reserved for an object and for a value of the JSON: what tinygltf makes of a material that is "{}",
+/// the largest, and of a number in a list.
+constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material), value_bytes = 64;
+
 /// Checks what tinygltf does not, or says less well: the JSON's nesting, its version, extensions and buffer views.
-/// Notes how much of each buffer file is wanted: a file may be longer than the buffer it holds, which tinygltf takes
-/// for an error.
+/// Reserves memory for what will be made of it, and notes how much of each buffer file is wanted: a file may be longer
+/// than the buffer it holds, which tinygltf takes for an error.
 void inspect_json(std::string_view json, FileAccess& access) {
     constexpr std::array<std::string_view, 5> kept{"buffers", "asset", "extensionsRequired", "accessors", "meshes"};
     auto const keep = [&](int depth, Json::parse_event_t event, Json& parsed) {
         if (depth > max_json_depth) {
             throw InputError("its JSON is nested too deeply");
         }
+        access.budget.reserve(event == Json::parse_event_t::object_start ? object_bytes
+                              : event == Json::parse_event_t::value      ? value_bytes
+                                                                         : 0,
+                              1);
         return event != Json::parse_event_t::key || depth != 1 ||
                std::find(kept.begin(), kept.end(), parsed.get_ref<std::string const&>()) != kept.end();
     };
@@ -283,6 +291,7 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, Sc
     double const file_read = lower_extension(file) == ".glb" ? all_read : 0.3; // what else is large lies beside a .gltf
     std::error_code code; // where it is set, reading says so
     FileAccess access{folder, budget, progress, std::filesystem::file_size(file, code), 0, 0, file_read};
+    budget.reserve(code ? 0 : access.bytes, 1);
     std::vector<unsigned char> const bytes =
         read_bytes(file, [&access](std::size_t count) { access.report_read(count); });
     std::string const base = folder.path().string();
@@ -301,6 +310,8 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, Sc
     try {
         loaded = is_binary(bytes) ? loader.LoadBinaryFromMemory(model.get(), &error, &remarks, bytes.data(), size, base)
                                   : loader.LoadASCIIFromString(model.get(), &error, &remarks, json.data(), size, base);
+    } catch (std::bad_alloc const&) {
+        throw; // which says nothing of the file
     } catch (std::exception const& problem) {
         error = problem.what();
     }
