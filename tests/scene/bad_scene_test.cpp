@@ -226,12 +226,12 @@ TEST(BadScene, PicturesAreCountedBeforeTheyAreDecoded) {
 
 TEST(BadScene, PicturesMadeOfTwoAreCounted) {
     TemporaryFolder const folder;
-    write_png(folder.path() / "large.png", Picture(600, 600)); // 1.4 MB of pixels, and as much with another's alpha
+    write_png(folder.path() / "large.png", Picture(1200, 1200)); // 5.8 MB of pixels, and as much with another's alpha
     folder.write("a.mtl", "newmtl m\nmap_Kd large.png\nmap_d large.png\n");
     auto const file =
         folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
-    EXPECT_EQ(import_scene(file, {}, with_megabytes(4)).images.size(), 2u);
-    expect_error(file, "more than 2 MB", with_megabytes(2));
+    EXPECT_EQ(import_scene(file, {}, with_megabytes(20)).images.size(), 2u);
+    expect_error(file, "more than 10 MB", with_megabytes(10));
 }
 
 TEST(BadScene, ObjectsAndListsOfJsonAreCounted) {
