@@ -192,6 +192,12 @@ ImportOptions with_megabytes(std::uint64_t megabytes) {
     return options;
 }
 
+/// Writes a triangle as .obj, whose material has these maps, lines of an .mtl. Returns the name of the file.
+std::filesystem::path textured_triangle(TemporaryFolder const& folder, std::string const& maps) {
+    folder.write("a.mtl", "newmtl m\n" + maps);
+    return folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+}
+
 TEST(BadScene, ZeroAccessorsAreCountedBeforeTheyAreMade) {
     TemporaryFolder const folder;
     GltfWriter writer = triangle_writer();
@@ -219,17 +225,13 @@ TEST(BadScene, PicturesAreCountedBeforeTheyAreDecoded) {
     EXPECT_EQ(import_scene(file, {}, with_megabytes(3)).images.size(), 2u);
     expect_error(file, "more than 2 MB", with_megabytes(2));
     expect_error(file, "more than 1 MB", with_megabytes(1));
-    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\n");
-    expect_error(folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"),
-                 "more than 1 MB", with_megabytes(1));
+    expect_error(textured_triangle(folder, "map_Kd large.png\n"), "more than 1 MB", with_megabytes(1));
 }
 
 TEST(BadScene, PicturesMadeOfTwoAreCounted) {
     TemporaryFolder const folder;
     write_png(folder.path() / "large.png", Picture(1200, 1200)); // 5.8 MB of pixels, and as much with another's alpha
-    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\nmap_d large.png\n");
-    auto const file =
-        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    auto const file = textured_triangle(folder, "map_Kd large.png\nmap_d large.png\n");
     EXPECT_EQ(import_scene(file, {}, with_megabytes(20)).images.size(), 2u);
     expect_error(file, "more than 10 MB", with_megabytes(10));
 }
@@ -270,9 +272,7 @@ TEST(BadScene, HeadersOfLargePicturesTakeNoMemory) {
     TemporaryFolder const folder;
     std::string const animation("RIFF\0\1\0\0WEBPVP8X\x0a\0\0\0\2\0\0\0\xff\x3f\0\xff\x1f\0", 30); // 16384x8192
     folder.write("large.png", animation + std::string(200, '\0'));
-    folder.write("a.mtl", "newmtl m\nmap_Kd large.png\n");
-    auto const file =
-        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    auto const file = textured_triangle(folder, "map_Kd large.png\n");
     expect_error(file, "more than 100 MB", with_megabytes(100));
 }
 
@@ -281,9 +281,7 @@ TEST(BadScene, PictureFilesAreCountedBeforeTheyAreRead) {
     TemporaryFolder const folder;
     write_png(folder.path() / "long.png", Picture(4, 4));
     std::filesystem::resize_file(folder.path() / "long.png", 100 << 20);
-    folder.write("a.mtl", "newmtl m\nmap_Kd long.png\n");
-    auto const file =
-        folder.write("a.obj", "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    auto const file = textured_triangle(folder, "map_Kd long.png\n");
     EXPECT_EQ(import_scene(file, {}, with_megabytes(200)).images.size(), 1u);
     expect_error(file, "more than 90 MB", with_megabytes(90));
 }
