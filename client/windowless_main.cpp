@@ -21,9 +21,8 @@ int main(int argc, char** argv) {
         parse_command_line(app, argc, argv);
         viewport = parse_size(options.size);
         connection = make_connection_options(options.connection);
-        if (is_video(options)) {
-            check_video_options(options);
-        } else if (!options.output.empty()) {
+        check_output_options(options);
+        if (!is_video(options) && !options.output.empty()) {
             pattern.emplace(options.output);
         }
     } catch (CLI::ParseError const& error) {

@@ -122,14 +122,15 @@ double run_seconds(WindowlessOptions const& options) {
     return options.duration.value_or(options.until_converged ? 60 : 10);
 }
 
-void check_video_options(WindowlessOptions const& options) {
+void check_output_options(WindowlessOptions const& options) {
+    bool const is_numbered = !is_video(options) && options.output.find('%') != std::string::npos;
+    if (!options.output_times.empty() && !is_numbered) {
+        throw InputError("--output-times is for numbered files: a video has all frames, and a single picture none");
+    }
     if (options.output == standard_output && ::isatty(STDOUT_FILENO) == 1) {
         throw InputError(
             "--output - writes a video to standard output, which is a terminal: pipe it to a program, as in "
             "framelet-client HOST --output - | mpv -");
-    }
-    if (!options.output_times.empty()) {
-        throw InputError("--output-times is for numbered files: a video has all frames");
     }
 }
 

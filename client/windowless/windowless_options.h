@@ -36,8 +36,8 @@ void add_windowless_options(CLI::App& app, WindowlessOptions& options);
 
 /// True where one film or video is written instead of numbered pictures.
 bool is_video(WindowlessOptions const& options);
-/// Throws InputError where no video can be written with these options.
-void check_video_options(WindowlessOptions const& options);
+/// Throws InputError where the options ask for output that cannot be.
+void check_output_options(WindowlessOptions const& options);
 /// Display frames a second.
 double display_rate(WindowlessOptions const& options);
 /// Seconds after which the run ends.

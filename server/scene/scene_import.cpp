@@ -47,14 +47,18 @@ void check_file(std::filesystem::path const& file) {
     }
 }
 
-/// Every warning once, on one line.
+/// Every warning once, on one line; of very many the first, and how many more there are.
 std::vector<std::string> condensed(std::vector<std::string> const& warnings) {
+    constexpr std::size_t most = 100;
     std::vector<std::string> lines;
     std::set<std::string> seen;
     for (std::string const& warning : warnings) {
-        if (seen.insert(warning).second) {
+        if (seen.insert(warning).second && seen.size() <= most) {
             lines.push_back(one_line(warning));
         }
+    }
+    if (seen.size() > most) {
+        lines.push_back(std::to_string(seen.size() - most) + " more warnings");
     }
     return lines;
 }

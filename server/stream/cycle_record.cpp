@@ -48,7 +48,6 @@ std::string to_json_line(CycleRecord const& record) {
                                        {{"plan", record.stage_seconds.plan},
                                         {"render", record.stage_seconds.render},
                                         {"learn", record.stage_seconds.learn},
-                                        {"shape", record.stage_seconds.shape},
                                         {"wait", record.stage_seconds.wait}}}};
     return line.dump();
 }

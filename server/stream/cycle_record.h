@@ -28,7 +28,7 @@ struct CycleRecord {
     double mean_shown_error = 0; ///< mean squared error over the viewport's pixels
     struct {
         double plan = 0, render = 0;
-        double learn = 0, shape = 0; ///< while the next batch was being rendered
+        double learn = 0; ///< while the next batch was being rendered
         double wait = 0; ///< from the end of rendering until the batch before was encoded and sent
     } stage_seconds;
 };

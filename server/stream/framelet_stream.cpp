@@ -114,7 +114,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
         if (!has_room(turn.now)) {
             return Step::wait;
         }
-        plan_exactly(present, scene);
+        plan_exactly(present, turn.now, scene);
         return Step::render;
     }
     return has_room(turn.now) ? plan_batch(turn, present, scene) : Step::wait;
@@ -234,10 +234,11 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 
 /// Plans some of what the viewer was sent with loss once more, exactly: but for that the picture is complete. What has
 /// four rays a sample is not among it: it was sent exactly, since nothing moved.
-void FrameletStream::plan_exactly(ViewState const& present, PosedScene const& scene) {
+void FrameletStream::plan_exactly(ViewState const& present, double now, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
     work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, true, true};
+    work.order.plan.moment_begun = now;
     viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
     set_planned(work);
 }

@@ -68,7 +68,7 @@ private:
     HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
     std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);
     Step plan_batch(Turn const& turn, ViewState const& present, PosedScene& scene);
-    void plan_exactly(ViewState const& present, PosedScene const& scene);
+    void plan_exactly(ViewState const& present, double now, PosedScene const& scene);
     BatchWork& free_work();
     void forget_viewer();
     void set_planned(BatchWork& work);

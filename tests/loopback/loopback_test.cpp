@@ -437,6 +437,8 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--duration", "nan"}, 2, "--duration"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--rate", "nan"}, 2, "--rate"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output-times", "nan"}, 2, "--output-times"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output-times", "1"}, 2, "numbered"},
+        {FRAMELET_CLIENT, {"127.0.0.1:7070", "--output", "one.png", "--output-times", "1"}, 2, "numbered"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth=nan"}, 2, "--smooth"},
         {FRAMELET_CLIENT, {}, 2, "HOST[:PORT]"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--smooth", "5000"}, 2, "from 0 to 1000"},

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <random>
 
+#include <assimp/scene.h>
 #include <gtest/gtest.h>
 
 #include "common/error.h"
 #include "common/files/image_io.h"
 #include "common/files/picture_writer.h"
 #include "gltf_writer.h"
+#include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/assimp/memory_limit.h"
 #include "server/scene/motion/animation.h"
 
@@ -248,6 +250,74 @@ TEST(BadScene, ObjectsAndListsOfJsonAreCounted) {
     expect_error(file_with("materials", "{}", ""), "more than 16 MB", with_megabytes(16));
     expect_error(file_with("nodes", "{}", ""), "more than 16 MB", with_megabytes(16));
     expect_error(file_with(R"(skins":[{"joints)", "0", "}]"), "more than 1 MB", with_megabytes(1));
+}
+
+TEST(BadScene, CopiesOfWhatDeformsAreCounted) {
+    TemporaryFolder const folder;
+    // A thousand nodes that share ten thousand vertices with a morph target: 520 MB once each has moved its own.
+    std::vector<float> positions;
+    for (int i = 0; i < 10'000; ++i) {
+        positions.insert(positions.end(), triangle_positions.begin(), triangle_positions.begin() + 3);
+    }
+    std::copy(triangle_positions.begin(), triangle_positions.end(), positions.begin());
+    GltfWriter writer;
+    writer.array(positions, "VEC3");
+    writer.array(std::vector<float>{0, 0, 1, 0, 0, 1, 0, 0, 1}, "VEC3");
+    std::string nodes = R"({"mesh":0})";
+    for (int i = 1; i < 1000; ++i) {
+        nodes += R"(,{"mesh":0})";
+    }
+    auto const file_with = [&](std::string const& targets) {
+        return folder.write("a.glb", writer.glb("\"nodes\":[" + nodes + R"(],"meshes":[{"primitives":[{"attributes":)" +
+                                                R"({"POSITION":0,"NORMAL":0})" + targets + "}]}]"));
+    };
+    EXPECT_NO_THROW(import_scene(file_with(""), {}, with_megabytes(400)));
+    expect_error(file_with(R"(,"targets":[{"POSITION":0}])"), "more than 400 MB", with_megabytes(400));
+    EXPECT_NO_THROW(import_scene(file_with(R"(,"targets":[{"POSITION":0}])"), {}, with_megabytes(600)));
+}
+
+TEST(BadScene, CopiesOfAssimpMeshesAreCounted) {
+    constexpr unsigned vertices = 10'000, nodes = 100;
+    aiScene from; // owns all that is new here
+    from.mMeshes = new aiMesh*[from.mNumMeshes = 1]{new aiMesh};
+    from.mMeshes[0]->mVertices = new aiVector3D[from.mMeshes[0]->mNumVertices = vertices];
+    from.mRootNode = new aiNode;
+    for (unsigned n = 1; n <= nodes; ++n) { // the n-th lists the mesh n times: 5,050 copies
+        auto* node = new aiNode;
+        node->mMeshes = new unsigned[node->mNumMeshes = n]{};
+        from.mRootNode->addChildren(1, &node);
+    }
+    Scene scene;
+    ImportBudget budget(64 << 20);
+    EXPECT_THROW(import_assimp_nodes(from, budget, scene), SceneTooLarge);
+    EXPECT_LE(scene.meshes.size(), 20u);
+}
+
+TEST(BadScene, WeightsOfManyMorphTargetsAreCountedForEachNode) {
+    TemporaryFolder const folder;
+    std::string targets = "{}", nodes = R"({"mesh":0})";
+    for (int i = 1; i < 10'000; ++i) {
+        targets += ",{}";
+        nodes += R"(,{"mesh":0})";
+    }
+    expect_error(folder.write("a.glb", triangle_writer().glb("\"nodes\":[" + nodes +
+                                                             R"(],"meshes":[{"primitives":[{"attributes":)" +
+                                                             R"({"POSITION":0},"targets":[)" + targets + "]}]}]")),
+                 "more than 300 MB", with_megabytes(300));
+}
+
+TEST(BadScene, WarningsAreNotMoreThanSomebodyReads) {
+    TemporaryFolder const folder;
+    std::string meshes, nodes;
+    for (int i = 0; i < 1000; ++i) {
+        std::string const comma = i > 0 ? "," : "";
+        meshes += comma + R"({"primitives":[{"attributes":{"POSITION":0}},{"attributes":{"POSITION":0},"mode":0}]})";
+        nodes += comma + R"({"mesh":)" + std::to_string(i) + "}";
+    }
+    Scene const scene = import_scene(
+        folder.write("a.glb", triangle_writer().glb("\"nodes\":[" + nodes + "],\"meshes\":[" + meshes + "]")));
+    ASSERT_EQ(scene.warnings.size(), 101u);
+    EXPECT_EQ(scene.warnings.back(), "900 more warnings");
 }
 
 TEST(BadScene, TheSceneFileItselfIsCounted) {

@@ -215,7 +215,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
         scene.warnings.push_back(problem + "; shown without it");
     }
     import_assimp_materials(*from, folder, budget, scene, progress);
-    import_assimp_nodes(*from, scene);
+    import_assimp_nodes(*from, budget, scene);
     return scene;
 }
 

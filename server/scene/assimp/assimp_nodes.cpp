@@ -25,8 +25,17 @@ Mat4 placed(Vec3 const& right, Vec3 const& back, aiVector3D const& position) {
     return Mat4(Vec4(right, 0), Vec4(glm::cross(back, right), 0), Vec4(back, 0), Vec4(to_vec3(position), 1));
 }
 
+/// Bytes that a mesh takes once it is imported, roughly: with all that a vertex may have.
+std::uint64_t imported_bytes(aiMesh const& mesh) {
+    std::uint64_t const vertex_bytes = 3 * sizeof(Vec3) + 2 * sizeof(Vec2) + sizeof(Vec4) +
+                                       (mesh.mNumBones > 0 ? sizeof(JointInfluence) : 0) +
+                                       mesh.mNumAnimMeshes * std::uint64_t(2 * sizeof(Vec3));
+    return mesh.mNumVertices * vertex_bytes + mesh.mNumFaces * std::uint64_t(sizeof(Primitive::triangles[0]));
+}
+
 struct Builder {
     aiScene const& from;
+    ImportBudget& budget;
     Scene& scene;
     std::map<std::string, Index> node_by_name;
     std::map<std::vector<unsigned>, Index> mesh_by_parts; ///< instances share a mesh
@@ -51,6 +60,7 @@ struct Builder {
             Mesh mesh;
             mesh.name = from.mMeshes[parts.front()]->mName.C_Str();
             for (unsigned const part : parts) {
+                budget.reserve(1, imported_bytes(*from.mMeshes[part]));
                 mesh.primitives.push_back(import_assimp_primitive(*from.mMeshes[part]));
             }
             aiMesh const& first = *from.mMeshes[parts.front()];
@@ -226,8 +236,8 @@ struct Builder {
 
 } // namespace
 
-void import_assimp_nodes(aiScene const& from, Scene& scene) {
-    Builder builder{from, scene, {}, {}};
+void import_assimp_nodes(aiScene const& from, ImportBudget& budget, Scene& scene) {
+    Builder builder{from, budget, scene, {}, {}};
     builder.add_nodes();
     builder.add_skins();
     builder.add_cameras();

@@ -19,7 +19,8 @@ void import_assimp_materials(aiScene const& from, SceneFolder const& folder, Imp
 /// Imports a mesh's triangles; its points, lines and bones are left out.
 Primitive import_assimp_primitive(aiMesh const& from);
 
-/// Imports nodes with their meshes, skins, cameras, lights and animations.
-void import_assimp_nodes(aiScene const& from, Scene& scene);
+/// Imports nodes with their meshes, skins, cameras, lights and animations. Nodes that list the same parts share a mesh,
+/// another list copies its parts: copies are reserved before they are made.
+void import_assimp_nodes(aiScene const& from, ImportBudget& budget, Scene& scene);
 
 } // namespace framelet

@@ -132,6 +132,25 @@ void finish_cameras(Scene& scene) {
     }
 }
 
+/// Reserves what a node takes for itself although it shares its mesh: weights of morph targets, and the vertices of
+/// what deforms.
+void reserve_copies(Scene const& scene, ImportBudget& budget) {
+    constexpr std::size_t vertex_bytes = 3 * sizeof(Vec3) + sizeof(Vec4); // position, normal, velocity, tangent
+    for (Node const& node : scene.nodes) {
+        if (node.mesh == none) {
+            continue;
+        }
+        Mesh const& mesh = scene.meshes[static_cast<std::size_t>(node.mesh)];
+        budget.reserve(mesh.morph_weights.size(), sizeof(float));
+        if (node.skin == none && mesh.morph_weights.empty()) {
+            continue;
+        }
+        for (Primitive const& primitive : mesh.primitives) {
+            budget.reserve(primitive.positions.size(), vertex_bytes);
+        }
+    }
+}
+
 /// Scales that are each in range may still multiply to something that is not.
 void check_placement(Scene const& scene) {
     std::vector<glm::dmat4> world(scene.nodes.size());
@@ -154,6 +173,7 @@ void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress) 
     finish_materials(scene);
     finish_meshes(scene, budget, progress);
     finish_nodes(scene);
+    reserve_copies(scene, budget);
     finish_clips(scene);
     finish_lights(scene);
     finish_cameras(scene);
