@@ -90,7 +90,7 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
     }
     out << "details\n"
         << "  frames            " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures
-        << " changed; whole " << after(s.full_picture_seconds) << "\n"
+        << " changed; full " << after(s.full_picture_seconds) << "\n"
         << "  round trip        "
         << (s.round_trip_seconds < 0
                 ? "not measured"

@@ -316,7 +316,7 @@ struct ClientCore::Impl {
         statistics.cached_bytes = pictures.memory_bytes();
         statistics.lag_seconds = maker.is_smooth() ? picture_settings.lag_seconds : 0;
         is_smooth = maker.is_smooth();
-        if (statistics.full_picture_seconds < 0 && asked.first_sent() && coverage >= 1) {
+        if (statistics.full_picture_seconds < 0 && asked.first_sent() && coverage >= full_coverage) {
             statistics.full_picture_seconds = seconds_between(*asked.first_sent(), now);
         }
     }

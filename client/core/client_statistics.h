@@ -6,6 +6,10 @@
 
 namespace framelet {
 
+/// Share of the viewport from which on a picture counts as full: while something moves some pixels come into view in
+/// each, and are filled from their neighbours.
+inline constexpr double full_coverage = 0.99;
+
 /// Counts and times since the viewer's first session was opened.
 struct ClientStatistics {
     double seconds = 0;
@@ -20,7 +24,7 @@ struct ClientStatistics {
     double insert_seconds = 0;
     double reconstruct_seconds = 0;
     double first_picture_seconds = -1; ///< from the first camera to the first picture; -1: not yet
-    double full_picture_seconds = -1; ///< from the first camera until no pixel was bare any more; -1: not yet
+    double full_picture_seconds = -1; ///< from the first camera until `full_coverage` was reached; -1: not yet
     double round_trip_seconds = -1; ///< camera sent -> first batch seen from it received; smoothed
     double least_round_trip_seconds = -1;
     double coverage = 0; ///< share of the viewport that is covered now, [0, 1]
