@@ -58,7 +58,7 @@ inline bool drifts(BodyNumber body, Vec3 const& velocity) {
 }
 
 /// Seconds of scene time for which what drifts is taken to go on as it was seen to go.
-inline constexpr float leading_seconds = 0.2f;
+inline constexpr float leading_seconds = 0.4f;
 
 /// True when samples of this body, velocity and age, where they lie on a layer, show before all that they come over,
 /// however good that is.

@@ -106,11 +106,11 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
     if ((parts >> FrameletShape::outlier & 1) != 0 && !shape.outliers.empty()) {
         common.is_outlier = true;
         common.layer = FrameletShape::outlier;
-        common.worn = worn(framelet.view, shape.decorrelation, static_cast<float>(spacing_), 0);
         common.tile_layer = framelet.tile.code * 4 + FrameletShape::outlier;
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
         common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
+        common.worn = worn(framelet.view, shape.decorrelation, static_cast<float>(spacing_), 0, common.is_still);
         if (!common.box.empty()) {
             common.signature =
                 signature_of(common, framelet.moment.batch, std::span(splats).subspan(common.first_splat));
@@ -151,9 +151,10 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, Decorre
 
 /// The worn spacing of samples in steps, as `worn_step` has it; limits `lasts_` to the times for which the step is the
 /// same.
-float FrameletWarp::worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced) {
+float FrameletWarp::worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced,
+                         bool still) {
     SceneTime const rendered = cache_.views()[view].scene_time;
-    float const rate = decorrelation_rate(decorrelation);
+    float const rate = still ? 0 : decorrelation_rate(decorrelation);
     float const fresh = worn_spacing(spacing, 0, rate) + misplaced;
     float const step = worn_step(worn_spacing(spacing, static_cast<float>(time_ - rendered), rate) + misplaced);
     if (rate > 0) {
@@ -185,7 +186,7 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
     // Pixels by which its samples may be shown off their positions: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
-    patch.worn = worn(view, decorrelation, spacing, misplaced);
+    patch.worn = worn(view, decorrelation, spacing, misplaced, is_still_);
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
     if (drifts(layer.body, layer.velocity)) {
         patch.group = drifting_group(patch.group);

@@ -48,7 +48,7 @@ private:
     glm::dvec2 high(HeldLayer const& layer) const;
     void add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation, std::uint64_t content,
                    WarpPatch& patch, std::vector<WarpPatch>& patches);
-    float worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced);
+    float worn(std::uint32_t view, DecorrelationCode decorrelation, float spacing, float misplaced, bool still);
     void rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch);
     /// Pixels by which what is shown at a pixel at depth 1 moves for each 1 / metre.
     float parallax_at(glm::dvec2 pixel) const;

@@ -36,12 +36,19 @@ TEST(Decorrelation, OutlinesAndReflectionsDecorrelateBeforeACameraThatMoves) {
     EXPECT_EQ(code_of(mirroring, true, false), 0);
 }
 
-TEST(Decorrelation, WhatTurnsInTheLightDecorrelatesUnlessItRests) {
-    Piece turning = detailed_piece();
-    turning.body = 3;
-    EXPECT_GT(code_of(turning, true, false), 0);
-    turning.rests = true;
-    EXPECT_EQ(code_of(turning, true, false), 0);
+/// Old samples of a surface must not outlast new ones because there is more detail beside them.
+TEST(Decorrelation, WhatIsCarriedWearsAtMuchTheSameRateWhateverItsDetail) {
+    for (float const detail : {1e-6f, 1e-4f, 0.01f, 0.1f}) {
+        for (bool const rests : {false, true}) {
+            Piece carried = detailed_piece();
+            carried.body = 3;
+            carried.rests = rests;
+            carried.detail = detail;
+            float const rate = decorrelation_rate(code_of(carried, true, false));
+            EXPECT_GE(rate, 0.95f);
+            EXPECT_LE(rate, 3.15f);
+        }
+    }
 }
 
 TEST(Decorrelation, IsTheShareOfWhatChanges) {

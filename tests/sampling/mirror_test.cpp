@@ -188,6 +188,45 @@ TEST(Mirror, TheLeastWornShows) {
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }
 
+TEST(Mirror, WhatHasNotMovedDoesNotWear) {
+    constexpr BodyNumber body = 1;
+    BodyTrack track{body, 0, {}}; // stands for 3 s, then goes to the right at a metre a second
+    for (int key = 0; key < 4 * body_keys_per_second; ++key) {
+        track.keys.push_back(
+            {Vec3(static_cast<float>(std::max(key - 3 * body_keys_per_second, 0)) / body_keys_per_second, 0, 0)});
+    }
+    BodyMotions motions;
+    motions.extend(track);
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), motions);
+    auto pieces = render_pieces(plane, plane.pixel_depth(), wall);
+    for (Piece& piece : pieces) {
+        piece.body = body;
+        piece.decorrelation = 1;
+    }
+    mirror.add(view_at(Vec3(0), 0).rays, motions, pieces);
+    mirror.look(view_at(Vec3(0), 2.9), motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
+    mirror.look(view_at(Vec3(0), 3.02), motions);
+    EXPECT_NEAR(summary_of(mirror).worn, worn_step(4), 1e-3) << "then at once: it comes into other light";
+}
+
+/// What is planned now shows a moment later: until then a shadow has to last with the viewer.
+TEST(Mirror, AShadowIsRenewedBeforeTheViewerGivesItUp) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    auto pieces = render_pieces(plane, plane.pixel_depth(), wall);
+    for (Piece& piece : pieces) {
+        piece.velocity = Vec3(1e-3f, 0, 0);
+    }
+    mirror.add(view_at(Vec3(0), 0).rays, no_motions, pieces);
+    mirror.look(view_at(Vec3(0), 0.1), no_motions);
+    EXPECT_TRUE(mirror.cell(5, 5).is_shown() && mirror.cell(5, 5).leads);
+    mirror.look(view_at(Vec3(0), 0.25), no_motions);
+    EXPECT_FALSE(mirror.cell(5, 5).is_shown());
+    EXPECT_TRUE(leads(static_body, pieces.front().velocity, 0.25f)) << "the viewer shows it still";
+}
+
 TEST(Mirror, WhatIsOlderThanAJumpShowsBehindWhatIsNot) {
     for (bool const jumps : {false, true}) {
         BodyMotions motions;

@@ -168,9 +168,35 @@ TEST(MomentPlan, WhatStandsIsRefinedToTheFinestSamplesAndWhatMovesIsNot) {
     };
     EXPECT_EQ(deepest_after([](Piece&) {}, 0), plane.max_depth());
     EXPECT_EQ(deepest_after([](Piece& piece) { piece.moves = true; }, 0), 0);
-    EXPECT_EQ(deepest_after([](Piece& piece) { piece.decorrelation = 1; }, 0), 0);
+    EXPECT_EQ(deepest_after([](Piece& piece) { piece.decorrelation = 1; }, 0), plane.max_depth())
+        << "what has not moved does not wear";
     float const pixel = 10 * view_at(0).rays.direction_dx.x;
     EXPECT_LT(deepest_after([](Piece&) {}, 20 * pixel), plane.max_depth());
+}
+
+/// The viewer would go on showing what is finer.
+TEST(MomentPlan, WhatIsStaleIsRenderedAsFineAsWhatItHasToReplace) {
+    float const pixel = 10 * view_at(0).rays.direction_dx.x;
+    Planner planner;
+    planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
+    MirrorView later = view_at(-pixel); // nearly all is in view still, moved
+    later.scene_time = 1;
+    planner.mirror.look(later, no_motions);
+    ASSERT_FALSE(planner.mirror.gives_way(planner.mirror.cell(20, 10)));
+    std::vector<Probe> probes;
+    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), probes);
+    planner.mirror.mark(find_stale(planner.mirror, probes, std::vector<float>(probes.size(), 0.0f), 16));
+    ASSERT_GT(planner.mirror.cell(20, 10).stale, 0);
+    planner.find(0.25 * viewport.width * viewport.height);
+    int inside = 0;
+    for (Tile const tile : planner.tiles()) {
+        PixelRect const rect = plane.tile_rect(tile);
+        if (rect.left >= 16 && rect.right <= 224) {
+            EXPECT_GE(tile.depth(), plane.pixel_depth());
+            ++inside;
+        }
+    }
+    EXPECT_GT(inside, 5);
 }
 
 TEST(MomentPlan, SamplesThatAreLeftOverBecomeMeansOfFourRays) {

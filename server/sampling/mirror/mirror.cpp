@@ -307,7 +307,7 @@ void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, i
     cell.is_outdated = reprojected.is_outdated;
     cell.detail = piece.detail / reprojected.scale;
     cell.spacing = piece.spacing;
-    cell.decorrelation = piece.decorrelation;
+    cell.decorrelation = reprojected.is_still ? 0 : piece.decorrelation;
     cell.moves = piece.moves && !piece.rests;
     cell.is_supersampled = piece.is_supersampled;
     cell.piece = static_cast<std::uint32_t>(index);

@@ -17,6 +17,8 @@ constexpr float most_pixels = 1e6f, most_scale = 1e6f;
 /// Pixels that a moved piece covers beyond each of its sides, or the gaps that turning and tilting leave between
 /// neighbours would count as holes.
 constexpr float margin = 0.5f;
+/// Seconds of scene time until what is rendered next shows: until then a shadow must go on leading.
+constexpr float renewal_seconds = 0.2f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
 
@@ -92,7 +94,8 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
         misplaced = reprojected.is_still ? 0 : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
-        if (!hides(spacing, misplaced) || is_adrift(piece.body, piece.velocity, age)) { // it shows where nothing does
+        if (!hides(spacing, misplaced) ||
+            is_adrift(piece.body, piece.velocity, std::abs(age) + renewal_seconds)) { // it shows where nothing does
             return {};
         }
     }
@@ -100,8 +103,9 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     Vec2 const slope = share * (piece.depth_slope - reprojected.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
     reprojected.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
     reprojected.tolerance = tolerance;
-    reprojected.leads = leads(piece.body, piece.velocity, age) && !piece.is_outlier;
-    reprojected.worn = worn_step(worn_spacing(spacing, age, piece.decorrelation) + misplaced);
+    reprojected.leads = leads(piece.body, piece.velocity, std::abs(age) + renewal_seconds) && !piece.is_outlier;
+    float const rate = reprojected.is_still ? 0 : piece.decorrelation;
+    reprojected.worn = worn_step(worn_spacing(spacing, age, rate) + misplaced);
     return reprojected;
 }
 

@@ -1,7 +1,7 @@
-// Estimates how soon what a framelet shows is expected to fade. Motion is no change, since the viewer moves what it
-// holds; but what turns looks otherwise in the light, and so do outlines and reflections before a camera that moves.
-// Other changes, such as a shadow that passes, are found by probes. In: the pieces of a framelet. Out: how soon they
-// fade.
+// Estimates how soon what a framelet shows is expected to fade once something has moved. Motion is no change, since the
+// viewer moves what it holds; but what a body carries comes into other light, and outlines and reflections change
+// before a camera that moves. Other changes, such as a shadow that passes, are found by probes. In: the pieces of a
+// framelet. Out: how soon they fade.
 #pragma once
 
 #include <span>
@@ -11,7 +11,8 @@
 
 namespace framelet {
 
-/// Sets the pieces' `decorrelation` and returns its code. `camera_stands`: it does not move; `has_outline`: the
+/// Sets the pieces' `decorrelation` and returns its code. What is on a body gets one also while that rests: what has
+/// not moved since it was rendered does not wear. `camera_stands`: it does not move; `has_outline`: the
 /// framelet shows more than one surface.
 DecorrelationCode expect_decorrelation(std::span<Piece> pieces, bool camera_stands, bool has_outline);
 

@@ -58,6 +58,16 @@ constexpr ChoiceFigures missed_shares(float finest, float means) {
 constexpr ChoiceFigures moved_shares = missed_shares(finest_shown_spacing, moved_supersampled),
                         standing_shares = missed_shares(0, standing_supersampled);
 
+/// Spacing, pixels, by which the viewer rates fresh samples of each choice.
+constexpr ChoiceFigures shown_spacings = [] {
+    ChoiceFigures spacings{};
+    spacings.fill(finest_shown_spacing); // means of rays are a pixel apart
+    for (int level = 0; level < pixel_level; ++level) {
+        spacings[static_cast<std::size_t>(level)] = spacing_of(level);
+    }
+    return spacings;
+}();
+
 /// True where means of rays show; of samples finer than pixels too the viewer moves the means.
 bool shows_means(Cell const& cell, bool stands) {
     return cell.is_supersampled || (!stands && cell.spacing < 1);
@@ -178,6 +188,10 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
     for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float pixels) {
+        // New samples show although they are worse, or only where they are better, whatever the old ones show.
+        bool const gives_way = cell.is_shown() && mirror.gives_way(cell);
+        float const least = gives_way ? -most_error : 0.0f;
+        float const too_coarse = gives_way || !cell.is_shown() ? INFINITY : worn_of_step(cell.worn).second;
         float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
         float const detail = cell.is_shown() ? cell.detail : hidden_detail;
         float worn = cell.is_shown() ? cell.worn : INFINITY;
@@ -192,18 +206,20 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
         }
         if (had >= 0) {
             covered = pixels;
-            worn = std::min(worn, spacing_of(had));
-            stale = 0;
+            if (std::max(spacing_of(had), finest_shown_spacing) < too_coarse) {
+                worn = std::min(worn, spacing_of(had));
+                stale = 0;
+            }
         }
-        // New samples show although they are worse, or only where they are better.
-        float const least = cell.is_shown() && mirror.gives_way(cell) ? -most_error : 0.0f;
         float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
         float const bare = pixels - covered;
         stale_sum += covered * stale;
         wrong_sum += covered * now + bare * hole_error;
         FloatLanes const shares = load_lanes((stands ? standing_shares : moved_shares).data());
         FloatLanes const then = smaller(detail * shares, FloatLanes{} + most_error);
-        gains += covered * larger(now - then, FloatLanes{} + least) + bare * larger(hole_error - then, FloatLanes{});
+        FloatLanes const gain = larger(now - then, FloatLanes{} + least);
+        gains += covered * (load_lanes(shown_spacings.data()) < too_coarse ? gain : FloatLanes{}) +
+                 bare * larger(hole_error - then, FloatLanes{});
     });
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;
