@@ -1,6 +1,7 @@
 #include "common/files/image_io.h"
 
 #include <algorithm>
+#include <cstring>
 #include <fstream>
 #include <memory>
 #include <mutex>
@@ -97,8 +98,26 @@ public:
 
     OIIO::ImageSpec const& spec() const { return input_->spec(); }
 
-    void read(int channels, OIIO::TypeDesc type, void* out, OIIO::stride_t pixel_bytes) {
-        contained([&] { return input_->read_image(0, 0, 0, channels, type, out, pixel_bytes); });
+    /// Reads the first channels of all pixels, `pixel_bytes` apart. Row by row where they are stored so: OpenImageIO
+    /// takes memory for 64 rows at least when it is asked for all, even where the picture has one.
+    void read(int channels, OIIO::TypeDesc type, void* out, std::size_t pixel_bytes) {
+        OIIO::ImageSpec const& s = spec();
+        if (s.tile_width != 0) {
+            auto const stride = static_cast<OIIO::stride_t>(pixel_bytes);
+            contained([&] { return input_->read_image(0, 0, 0, channels, type, out, stride); });
+            return;
+        }
+        std::size_t const taken = static_cast<std::size_t>(channels) * type.size();
+        std::size_t const stored = static_cast<std::size_t>(s.nchannels) * type.size();
+        std::vector<std::byte> row(static_cast<std::size_t>(s.width) * stored);
+        auto* to = static_cast<std::byte*>(out);
+        for (int y = s.y; y < s.y + s.height; ++y) {
+            contained([&] { return input_->read_scanline(y, s.z, type, row.data()); });
+            for (std::byte const* from = row.data(); from != row.data() + row.size(); from += stored) {
+                std::memcpy(to, from, taken);
+                to += pixel_bytes;
+            }
+        }
     }
 
 private:
@@ -211,7 +230,7 @@ FloatImage read_float_image(std::filesystem::path const& file, SizeCheck const& 
     int const channels = std::min(spec.nchannels, 3);
     FloatImage image(spec.width, spec.height);
     std::vector<float> stored(image.rgb.size() * static_cast<std::size_t>(channels));
-    opened.read(channels, OIIO::TypeDesc::FLOAT, stored.data(), OIIO::AutoStride);
+    opened.read(channels, OIIO::TypeDesc::FLOAT, stored.data(), static_cast<std::size_t>(channels) * sizeof(float));
     bool const encoded = spec.format.basetype == OIIO::TypeDesc::UINT8;
     for (std::size_t i = 0; i < image.rgb.size(); ++i) {
         float const* in = &stored[i * static_cast<std::size_t>(channels)];

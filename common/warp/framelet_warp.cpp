@@ -110,7 +110,12 @@ void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vect
         common.first_splat = static_cast<std::uint32_t>(splats.size());
         add_splats(framelet, common, splats);
         common.splats = static_cast<std::uint32_t>(splats.size()) - common.first_splat;
-        common.worn = worn(framelet.view, shape.decorrelation, static_cast<float>(spacing_), 0, common.is_still);
+        float moved = 0; // mean spacing
+        for (Splat const& splat : std::span(splats).subspan(common.first_splat)) {
+            moved += splat.spacing / static_cast<float>(common.splats);
+        }
+        float const spacing = std::max(moved, static_cast<float>(spacing_));
+        common.worn = worn(framelet.view, shape.decorrelation, spacing, 0, common.is_still);
         if (!common.box.empty()) {
             common.signature =
                 signature_of(common, framelet.moment.batch, std::span(splats).subspan(common.first_splat));

@@ -37,6 +37,16 @@ constexpr std::size_t index_of(int x, int y) {
     return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
 }
 
+/// True for pixels where nothing of a group can show at such inverse depths: they are covered firmly, by what is near
+/// enough, and by nothing that it would add up with.
+WideInts is_hidden(WideFloats depth, float tolerance, std::int32_t group, std::size_t first, Layers const& layers) {
+    constexpr float rounding = 1e-5f; // largest difference of sums along a column from those of `sample_patch`
+    WideFloats const hiding = (1 + rounding - same_surface) * depth - tolerance;
+    return load_lanes<WideInts>(&layers.is_firm[first]) &
+           (load_lanes<WideFloats>(&layers.inverse_depth[first]) >= hiding) &
+           (load_lanes<WideInts>(&layers.group[first]) != group);
+}
+
 /// Lets candidates compete with what pixels have; true when one of them shows. Firm wins over not firm. Of two alike
 /// the clearly nearer one wins, else the one that was there, which is the better one. Those of one group on one surface
 /// add up. Where better samples show that a surface has ended, others of it are not firm: else it would be as wide as
@@ -53,7 +63,7 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     WideInts const is_ended = (depth - ended <= limit) & (ended - depth <= limit);
     WideInts const is_firm = shows & candidate.is_firm & ~is_ended;
     if (has_ends) {
-        WideInts const begins = candidate.ends & (ended < 0);
+        WideInts const begins = candidate.ends & (ended < 0) & ~is_hidden(depth, tolerance, group, first, layers);
         store_lanes(begins ? depth : ended, &layers.ended[first]);
     }
     WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
@@ -75,20 +85,15 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
 }
 
 /// True when nothing of the patch can show in so many rows of lanes, the first of which lies (x, y) from the centre of
-/// its box's first pixel: they are covered firmly, by what is near enough, and by nothing that its samples would add up
-/// with.
+/// its box's first pixel.
 bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_row, int count, Layers const& layers) {
-    constexpr float rounding = 1e-5f; // largest difference of the sums here from those of `sample_patch`
     WideFloats const from_left = x + __builtin_convertvector(wide_column, WideFloats);
     WideFloats const from_top = y + __builtin_convertvector(wide_row, WideFloats);
     WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
     WideInts shows{};
     for (int i = 0; i < count; ++i) {
         std::size_t const at = index_of(column, first_row + i * wide_rows);
-        WideFloats const hiding = (1 + rounding - same_surface) * depth - patch.tolerance;
-        shows |= ~load_lanes<WideInts>(&layers.is_firm[at]) |
-                 (load_lanes<WideFloats>(&layers.inverse_depth[at]) < hiding) |
-                 (load_lanes<WideInts>(&layers.group[at]) == patch.group);
+        shows |= ~is_hidden(depth, patch.tolerance, patch.group, at, layers);
         depth += static_cast<float>(wide_rows) * patch.inverse_depth_dy;
     }
     return !any_lane(shows);

@@ -29,6 +29,22 @@ void alone(FrameletCache const& cache, Camera const& display, SceneTime time, Bo
     });
 }
 
+/// Samples of a car that was far away must not count as good as fresh ones when it has come near.
+TEST(MergedWarp, OutliersWearByTheirSpacingOnceMoved) {
+    constexpr bool all_outliers = true;
+    FrameletPool const pool = filled(room(), front(), 0, 0, all_outliers);
+    Camera near = front();
+    near.position.z = 3; // the board is 1 m away instead of 4 .. 5
+    for (Camera const& camera : {front(), near}) {
+        std::vector<WarpPatch> patches;
+        std::vector<Splat> splats;
+        alone(pool.newest(), camera, 0, {}, patches, splats);
+        ASSERT_GT(patches.size(), 10U);
+        auto const worn = std::ranges::count_if(patches, [](WarpPatch const& patch) { return patch.worn > 1.2f; });
+        EXPECT_TRUE(camera == front() ? worn == 0 : worn > std::ssize(patches) / 2) << worn; // all but the sky
+    }
+}
+
 /// Scenes of several planes in a framelet, bodies, what deforms, outliers; with all framelets of one batch, with each
 /// fifth of one, or with planes of neighbours that do not quite meet.
 TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {

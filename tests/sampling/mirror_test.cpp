@@ -188,6 +188,20 @@ TEST(Mirror, TheLeastWornShows) {
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }
 
+TEST(Mirror, OutliersWearByTheirSpacingOnceMoved) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    auto pieces = render_pieces(plane, plane.pixel_depth(), wall); // 10 m away
+    for (Piece& piece : pieces) {
+        piece.is_outlier = true;
+    }
+    mirror.add(view_at(Vec3(0)).rays, no_motions, pieces);
+    mirror.look(view_at(Vec3(0, 0, -5)), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
+    mirror.look(view_at(Vec3(0, 0, 5)), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 1, 1e-3);
+}
+
 TEST(Mirror, WhatHasNotMovedDoesNotWear) {
     constexpr BodyNumber body = 1;
     BodyTrack track{body, 0, {}}; // stands for 3 s, then goes to the right at a metre a second

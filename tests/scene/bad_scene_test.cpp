@@ -279,7 +279,7 @@ TEST(BadScene, CopiesOfWhatDeformsAreCounted) {
 TEST(BadScene, CopiesOfAssimpMeshesAreCounted) {
     constexpr unsigned vertices = 10'000, nodes = 100;
     aiScene from; // owns all that is new here
-    from.mMeshes = new aiMesh*[from.mNumMeshes = 1]{new aiMesh};
+    from.mMeshes = new aiMesh* [from.mNumMeshes = 1] { new aiMesh };
     from.mMeshes[0]->mVertices = new aiVector3D[from.mMeshes[0]->mNumVertices = vertices];
     from.mRootNode = new aiNode;
     for (unsigned n = 1; n <= nodes; ++n) { // the n-th lists the mesh n times: 5,050 copies
@@ -366,8 +366,11 @@ TEST(BadScene, WideFlatPicturesTakeLittleMemory) {
     Picture wide(1'000'000, 1);
     std::ranges::fill(wide.rgba, std::uint8_t{255});
     write_ppm(file, wide);
+    auto const sky = folder.write("wide.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1000000\n" +
+                                                  std::string(4'000'000, '\x80'));
     MemoryLimit const limit(256 << 20);
     EXPECT_EQ(read_picture(file), wide);
+    EXPECT_EQ(read_float_image(sky).width, 1'000'000);
 }
 
 TEST(BadScene, OneBufferFileNamedOften) {

@@ -98,6 +98,8 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
             is_adrift(piece.body, piece.velocity, std::abs(age) + renewal_seconds)) { // it shows where nothing does
             return {};
         }
+    } else {
+        spacing *= std::max(reprojected.scale, 1.0f);
     }
     reprojected.inverse_depth = share * piece.inverse_depth;
     Vec2 const slope = share * (piece.depth_slope - reprojected.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
