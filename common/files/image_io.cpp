@@ -70,6 +70,24 @@ bool decodes_as_it_opens(PictureFormat format) {
            format == PictureFormat::tga;
 }
 
+/// True for a BMP whose header says so. OpenImageIO 2.4 reads outside its memory where such a picture is broken.
+bool is_run_length_coded(std::span<std::byte const> bmp) {
+    constexpr std::size_t header_bytes = 14, compression = 30; // 32 bits each, the lowest byte first
+    bool const has_compression = bmp.size() > compression && bmp[header_bytes] != std::byte{12}; // the first version
+    return has_compression && (bmp[compression] == std::byte{1} || bmp[compression] == std::byte{2});
+}
+
+/// A file in memory. OpenImageIO 2.4's own reads beyond the end of what it has where it is asked to begin there.
+class MemoryFile : public OIIO::Filesystem::IOMemReader {
+public:
+    using IOMemReader::IOMemReader;
+
+    std::size_t pread(void* to, std::size_t bytes, std::int64_t offset) override {
+        bool const begins = offset >= 0 && static_cast<std::size_t>(offset) < size();
+        return begins ? IOMemReader::pread(to, bytes, offset) : 0;
+    }
+};
+
 /// A picture in memory that OpenImageIO reads, opened once `check` has been told its size.
 class OpenedPicture {
 public:
@@ -85,6 +103,9 @@ public:
         bool const is_told_first = decodes_as_it_opens(format);
         if (is_told_first) {
             tell(header_size(format, bytes));
+        }
+        if (format == PictureFormat::bmp && is_run_length_coded(bytes)) {
+            fail(name, "it is a BMP with run-length coding, which is not read: save it without, or as PNG");
         }
         open(reader_name(format));
         PictureSize const opened{spec().width, spec().nchannels < 1 ? 0 : spec().height};
@@ -102,7 +123,7 @@ public:
     /// takes memory for 64 rows at least when it is asked for all, even where the picture has one.
     void read(int channels, OIIO::TypeDesc type, void* out, std::size_t pixel_bytes) {
         OIIO::ImageSpec const& s = spec();
-        if (s.tile_width != 0) {
+        if (s.tile_width != 0 || input_->format_name() != std::string_view("hdr")) {
             auto const stride = static_cast<OIIO::stride_t>(pixel_bytes);
             contained([&] { return input_->read_image(0, 0, 0, channels, type, out, stride); });
             return;
@@ -149,7 +170,7 @@ private:
         fail(name_, input_->geterror());
     }
 
-    OIIO::Filesystem::IOMemReader memory_;
+    MemoryFile memory_;
     std::string const name_;
     std::unique_ptr<OIIO::ImageInput> input_;
 };

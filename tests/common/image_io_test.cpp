@@ -190,5 +190,19 @@ TEST(ImageIo, TexturesNobodyDecodesAreNamed) {
     EXPECT_NE(failure_of("#?RADIANCE\n\n-Y 1 +X 1\n" + rest, "a.png").find("Radiance HDR"), std::string::npos);
 }
 
+/// OpenImageIO would read outside its memory.
+TEST(ImageIo, RunLengthsOfBmpAreRefused) {
+    std::string bmp(80, '\0');
+    bmp.replace(0, 2, "BM");
+    bmp[10] = 54; // where pixels begin
+    bmp[14] = 40;
+    bmp[18] = bmp[22] = 2; // pixels in each direction
+    bmp[26] = 1;
+    bmp[28] = 24;
+    EXPECT_EQ(failure_of(bmp, "a.bmp"), "no error");
+    bmp[30] = 1;
+    EXPECT_NE(failure_of(bmp, "a.bmp").find("run-length"), std::string::npos);
+}
+
 } // namespace
 } // namespace framelet
