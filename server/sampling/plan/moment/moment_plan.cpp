@@ -206,7 +206,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
         }
         if (had >= 0) {
             covered = pixels;
-            if (std::max(spacing_of(had), finest_shown_spacing) < too_coarse) {
+            if (shown_spacings[static_cast<std::size_t>(had)] < too_coarse) {
                 worn = std::min(worn, spacing_of(had));
                 stale = 0;
             }
