@@ -16,6 +16,7 @@
 #include "client/window/viewer.h"
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
+#include "common/large_blocks.h"
 
 namespace {
 
@@ -43,6 +44,7 @@ void remember(framelet::Window const& window, framelet::ViewerMemory& memory) {
 
 int main(int argc, char** argv) {
     using namespace framelet;
+    give_back_large_blocks();
     note_end_signals();
     ConnectionArguments arguments;
     arguments.server = usual_server;

@@ -6,9 +6,11 @@
 #include "client/windowless/windowless_run.h"
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
+#include "common/large_blocks.h"
 
 int main(int argc, char** argv) {
     using namespace framelet;
+    give_back_large_blocks();
     WindowlessOptions options;
     CLI::App app("Looks at a scene that framelet-server renders, without a window: writes pictures and statistics.",
                  "framelet-client");

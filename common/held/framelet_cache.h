@@ -13,6 +13,7 @@
 
 #include "common/framelet/framelet.h"
 #include "common/held/held_shape.h"
+#include "common/large_blocks.h"
 
 namespace framelet {
 
@@ -64,7 +65,8 @@ inline constexpr Tile no_tile{0};
 /// ever needed: a picture at rest needs many times what a moment of a moving one does.
 class FrameletRoom {
 public:
-    using Chunk = std::array<CachedFramelet, 64>;
+    using Chunk = std::array<CachedFramelet, 256>;
+    static_assert(sizeof(Chunk) >= least_large_block, "smaller ones would stay with the program");
 
     /// `most_spare`: how many chunks wait for their next use at most; what is beyond goes back to the system.
     explicit FrameletRoom(std::size_t most_spare) : most_spare_(most_spare) {}

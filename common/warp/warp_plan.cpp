@@ -117,12 +117,10 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
         square.note_number(index);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
-        // Framelets finer than pixels are held where the camera rests, of one moment after the other: else each moment
-        // would keep the memory for them.
-        if (square.depth > cache.plane().pixel_depth() && square.merged.is_empty()) {
-            square.give_back_room();
-        }
+        known_[index].holds = !square.merged.is_empty();
+        known_[index].has_room |= known_[index].holds;
     });
+    give_back_room();
     if (!replanned_.empty() || first_entry_.empty()) {
         occupied_.clear();
         for (std::uint32_t i = 0; i < known_.size(); ++i) {
@@ -152,6 +150,19 @@ void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
         PixelRect const rect = plane_.tile_rect(square.tile);
         Viewport const viewport = plane_.viewport();
         flag({rect.left, rect.top, std::min(rect.right, viewport.width), std::min(rect.bottom, viewport.height)});
+    }
+}
+
+/// Frees the memory of squares in which nothing has been held for a while.
+void WarpPlan::give_back_room() {
+    for (std::size_t i = 0; i < known_.size(); ++i) {
+        Known& known = known_[i];
+        if (known.holds || !known.has_room) {
+            known.idle = 0;
+        } else if (squares_[i].depth > plane_.pixel_depth() || ++known.idle == most_empty_pictures) {
+            squares_[i].give_back_room();
+            known.has_room = false;
+        }
     }
 }
 

@@ -31,6 +31,10 @@ public:
     /// Largest number of patches that are kept for a block, on the average. Where a camera goes so near that there
     /// would be more, the first ones in the order of painting are kept.
     static constexpr std::size_t most_patches_per_block = 256;
+    /// Number of plans for which a square in which nothing is held keeps its memory: the next moment, some tenths of a
+    /// second later, mostly needs it again. Squares of framelets finer than pixels keep none: those are held where the
+    /// camera rests, and take sixteen times as much.
+    static constexpr int most_empty_pictures = 30;
 
     WarpPlan();
     ~WarpPlan();
@@ -95,6 +99,9 @@ private:
         std::uint64_t change = 0; ///< its entry there when it was planned
         TimeSpan lasts{0, -1}; ///< display times for which the plan holds
         bool is_empty = true; ///< has no patches
+        bool has_room = false; ///< has memory for what is held in it
+        bool holds = false; ///< something is held in it
+        std::uint8_t idle = 0; ///< number of plans since something was held in it
     };
 
     /// A set of layers: bit p of word k is layer k of the framelet of index p.
@@ -102,6 +109,7 @@ private:
 
     WarpPatch const& patch_at(std::uint32_t entry) const;
     void set_squares(FrameletCache const& cache);
+    void give_back_room();
     static void plan(Square& square, bool outliers, FrameletWarp& warp);
     static bool add_merged(MergedLayer const& merged, FrameletWarp& warp, Square& square);
     static void add_parts(MergedLayer const& merged, FrameletWarp& warp, Square& square, LayerBits& alone);

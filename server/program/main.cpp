@@ -10,7 +10,6 @@
 #include <memory>
 
 #include <fcntl.h>
-#include <malloc.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
@@ -18,6 +17,7 @@
 #include "common/command_line/program_failure.h"
 #include "common/counted.h"
 #include "common/error.h"
+#include "common/large_blocks.h"
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
@@ -54,16 +54,6 @@ void read_files(Options& options) {
         throw InputError("cannot write '" + options.record_events.string() +
                          "': give --record-events a file in a folder that exists");
     }
-}
-
-/// Gives the memory of viewers that have left back to the system. Left to itself the allocator of glibc keeps such
-/// blocks once one has been freed, between smaller ones, and a server takes twice the memory after a while.
-void give_back_large_blocks() {
-#ifdef __GLIBC__
-    constexpr int least_bytes = 256 << 10, most_free_bytes = 16 << 20;
-    mallopt(M_MMAP_THRESHOLD, least_bytes);
-    mallopt(M_TRIM_THRESHOLD, most_free_bytes); // less would be given back and asked for again with each batch
-#endif
 }
 
 std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import) {

@@ -10,6 +10,7 @@
 #include <spdlog/spdlog.h>
 
 #include "common/error.h"
+#include "common/large_blocks.h"
 #include "framelet_version.h"
 #include "tests/evaluation/live/live_verbs.h"
 #include "tests/evaluation/verbs.h"
@@ -94,6 +95,7 @@ std::string command_of(std::vector<std::string> const& words) {
 } // namespace
 
 int main(int argc, char** argv) {
+    framelet::give_back_large_blocks(); // as the programs do
     VerbOptions options;
     LiveVerbOptions live;
     Answer answer;

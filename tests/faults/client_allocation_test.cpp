@@ -102,6 +102,23 @@ TEST_P(ClientAllocation, FailsAndIsSaidOrMadeUpFor) {
     EXPECT_LT(live_allocations() - live, thrown / 2) << "what has failed gives back what it had";
 }
 
+TEST(ClientAllocation, GoesAwayWhateverFails) {
+    ServerProcess const server(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb",
+                               {"--paused", "--exposure", "0", "--insecure"});
+    std::int64_t live = 0;
+    for (std::uint64_t number = 1; number <= 30; ++number) {
+        auto core = std::make_unique<ClientCore>(options_of(server.address()));
+        core->set_view(core->welcome().start_camera, {64, 48});
+        core->wait_for_news(std::chrono::milliseconds(50));
+        {
+            FailingAllocation const fails(number, UINT64_MAX);
+            core.reset();
+        }
+        live = number == 1 ? live_allocations() : live;
+    }
+    EXPECT_LT(live_allocations() - live, 15) << "what has failed gives back what it had";
+}
+
 TEST(ClientAllocation, ProgramsSayWhatIsMissing) {
     EXPECT_NE(std::string(failure_text(std::bad_alloc())).find("memory"), std::string::npos);
     EXPECT_STREQ(failure_text(ConnectionError("gone")), "gone");

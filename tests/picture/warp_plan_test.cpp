@@ -75,6 +75,53 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
     }
 }
 
+std::size_t squares_with_room(WarpPlan& plan) {
+    std::size_t count = 0;
+    for (std::uint32_t i = 0; i < plan.square_count(); ++i) {
+        count += plan.square_grid(i).grid().empty() ? 0 : 1;
+    }
+    return count;
+}
+
+/// A moment that comes soon finds the room of the last one; what stays empty is given back.
+TEST(WarpPlan, GivesBackTheRoomOfSquaresThatStayEmpty) {
+    ImagePlane const plane(viewport);
+    FrameletCache cache(plane);
+    WarpPlan plan;
+    int number = 0;
+    auto const show = [&] { plan.make(cache, 0, true, front(), number * 0.01, {}); };
+    auto const hold = [&](int depth) {
+        cache.insert(
+            wall().batch(plane, static_cast<std::uint64_t>(++number), front(), 0, visible_tiles(plane, depth)));
+    };
+    hold(plane.pixel_depth());
+    show();
+    std::size_t const at_pixels = squares_with_room(plan);
+    ASSERT_GT(at_pixels, 0u);
+    cache.clear();
+    hold(plane.pixel_depth() - 1);
+    show();
+    std::size_t const at_both = squares_with_room(plan);
+    EXPECT_GT(at_both, at_pixels) << "it may be needed soon";
+    for (int i = 0; i < WarpPlan::most_empty_pictures; ++i) {
+        show();
+    }
+    EXPECT_EQ(squares_with_room(plan), at_both - at_pixels) << "what is held has its room";
+    cache.clear();
+    hold(plane.pixel_depth());
+    for (int i = 0; i < WarpPlan::most_empty_pictures / 2; ++i) {
+        show();
+    }
+    cache.clear();
+    show();
+    hold(plane.pixel_depth());
+    for (int i = 0; i < WarpPlan::most_empty_pictures; ++i) {
+        show();
+    }
+    EXPECT_EQ(squares_with_room(plan), at_pixels) << "what comes back is counted anew";
+    EXPECT_GT(entries_of(plan), 0u);
+}
+
 /// Blocks that are not flagged have the patches that they had, also where one has left.
 TEST(WarpPlan, FlagsEachBlockOfWhichThePatchesAreOthers) {
     ImagePlane const plane(viewport);

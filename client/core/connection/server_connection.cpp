@@ -365,9 +365,6 @@ ServerConnection::~ServerConnection() {
     if (impl_->open) {
         impl_->say_goodbye();
     }
-    if (impl_->attempted) {
-        impl_->attempted->close();
-    }
 }
 
 Welcome const& ServerConnection::welcome() const {

@@ -1,0 +1,17 @@
+// Has the C library give back large blocks of memory once they are freed: framelets, pictures and geometry come in
+// blocks that are taken and freed all the time.
+#pragma once
+
+#include <cstddef>
+
+namespace framelet {
+
+/// Bytes from which on a block is a large one.
+inline constexpr std::size_t least_large_block = 256 << 10;
+
+/// Takes each large block from the system by itself and gives it back when it is freed. Left to itself glibc keeps such
+/// blocks once one has been freed, between smaller ones, and a program takes twice the memory after a while. For the
+/// beginning of `main`; where the library is not glibc, nothing happens.
+void give_back_large_blocks();
+
+} // namespace framelet
