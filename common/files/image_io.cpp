@@ -119,11 +119,11 @@ public:
 
     OIIO::ImageSpec const& spec() const { return input_->spec(); }
 
-    /// Reads the first channels of all pixels, `pixel_bytes` apart. Radiance pictures row by row: of these OpenImageIO
-    /// takes memory for 64 rows at least when it is asked for all, even where the picture has one.
+    /// Reads the first channels of all pixels, `pixel_bytes` apart. All but OpenEXR, which may be in tiles, row by row:
+    /// OpenImageIO takes memory for 64 rows at least when it is asked for all, even where the picture has one.
     void read(int channels, OIIO::TypeDesc type, void* out, std::size_t pixel_bytes) {
         OIIO::ImageSpec const& s = spec();
-        if (input_->format_name() != std::string_view("hdr")) {
+        if (input_->format_name() == std::string_view("openexr")) {
             auto const stride = static_cast<OIIO::stride_t>(pixel_bytes);
             contained([&] { return input_->read_image(0, 0, 0, channels, type, out, stride); });
             return;

@@ -356,7 +356,7 @@ TEST(BadScene, PictureFilesAreCountedBeforeTheyAreRead) {
     expect_error(file, "more than 90 MB", with_megabytes(90));
 }
 
-/// OpenImageIO would take memory for 256 rows, 768 MB, though there is one.
+/// OpenImageIO would take memory for many rows, of a picture of bytes for 256, though there is one.
 TEST(BadScene, WideFlatPicturesTakeLittleMemory) {
 #ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
@@ -368,8 +368,13 @@ TEST(BadScene, WideFlatPicturesTakeLittleMemory) {
     write_ppm(file, wide);
     auto const sky = folder.write("wide.hdr", "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 1000000\n" +
                                                   std::string(4'000'000, '\x80'));
+    // A BMP of 32 bits a pixel: 14 bytes, a header of 40, pixels.
+    std::string bmp("BM\0\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\x40\x42\x0f\0\x01\0\0\0\x01\0\x20\0", 30);
+    bmp.append(24, '\0').append(4 * 1'000'000, '\xff');
+    auto const bitmap = folder.write("wide.bmp", bmp);
     MemoryLimit const limit(256 << 20);
     EXPECT_EQ(read_picture(file), wide);
+    EXPECT_EQ(read_picture(bitmap), wide);
     EXPECT_EQ(read_float_image(sky).width, 1'000'000);
 }
 

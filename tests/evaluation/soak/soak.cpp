@@ -262,7 +262,11 @@ private:
         StillView const view = view_of(viewer, moment);
         SoakViewer fresh(port_, {}, view.viewport);
         double const began = seconds();
-        while (!fresh.come_to_rest(view) && seconds() - began < patience) {
+        while (!fresh.come_to_rest(view)) {
+            if (seconds() - began > patience) {
+                fail("the reference of viewer " + std::to_string(viewer) + " is not complete");
+                break;
+            }
             std::this_thread::sleep_for(step);
         }
         reference = fresh.picture();
