@@ -118,7 +118,6 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();
         known_[index].holds = !square.merged.is_empty();
-        known_[index].has_room |= known_[index].holds;
     });
     give_back_room();
     if (!replanned_.empty() || first_entry_.empty()) {
@@ -157,11 +156,14 @@ void WarpPlan::flag_replanned(std::vector<std::uint8_t>& blocks) const {
 void WarpPlan::give_back_room() {
     for (std::size_t i = 0; i < known_.size(); ++i) {
         Known& known = known_[i];
-        if (known.holds || !known.has_room) {
-            known.idle = 0;
-        } else if (squares_[i].depth > plane_.pixel_depth() || ++known.idle == most_empty_pictures) {
-            squares_[i].give_back_room();
-            known.has_room = false;
+        if (known.holds) {
+            known.empty_pictures = 0;
+        } else if (known.empty_pictures < most_empty_pictures) {
+            bool const is_finer = squares_[i].depth > plane_.pixel_depth();
+            known.empty_pictures = is_finer ? most_empty_pictures : known.empty_pictures + 1;
+            if (known.empty_pictures == most_empty_pictures) {
+                squares_[i].give_back_room();
+            }
         }
     }
 }

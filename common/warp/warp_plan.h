@@ -99,9 +99,8 @@ private:
         std::uint64_t change = 0; ///< its entry there when it was planned
         TimeSpan lasts{0, -1}; ///< display times for which the plan holds
         bool is_empty = true; ///< has no patches
-        bool has_room = false; ///< has memory for what is held in it
         bool holds = false; ///< something is held in it
-        std::uint8_t idle = 0; ///< number of plans since something was held in it
+        int empty_pictures = most_empty_pictures; ///< plans since something was held in it; at the most it has no room
     };
 
     /// A set of layers: bit p of word k is layer k of the framelet of index p.
