@@ -6,8 +6,9 @@
 
 namespace framelet {
 
-/// Bytes from which on a block is a large one.
-inline constexpr std::size_t least_large_block = 256 << 10;
+/// Bytes from which on a block is a large one: a square's grid of samples (`MergedSquare`) is, which is the smallest
+/// that comes and goes by the hundred.
+inline constexpr std::size_t least_large_block = 64 << 10;
 
 /// Takes each large block from the system by itself and gives it back when it is freed. Left to itself glibc keeps such
 /// blocks once one has been freed, between smaller ones, and a program takes twice the memory after a while. For the

@@ -14,6 +14,8 @@ constexpr float same_surface = 0.02f;
 constexpr int least_share = cell_pixels / 2;
 /// More than a viewer can hold is not worth remembering as gone.
 constexpr std::size_t most_forgotten = std::size_t{1} << 18;
+/// A moment keeps room for a piece for so many cells, which is a quarter of what a picture at rest has.
+constexpr std::size_t cells_per_kept_piece = 16;
 
 std::uint64_t key_of(SentTile const& sent) {
     return sent.batch << 32 ^ sent.tile.code;
@@ -188,9 +190,10 @@ void Mirror::empty(Moment& moment) {
     give_back_room(moment);
 }
 
-/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that.
+/// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that,
+/// since after an hour each has held such a picture once.
 void Mirror::give_back_room(Moment& moment) {
-    if (moment.pieces.capacity() > std::max(cells_.size(), 4 * moment.pieces.size())) {
+    if (moment.pieces.capacity() > std::max(cells_.size() / cells_per_kept_piece, 4 * moment.pieces.size())) {
         moment.pieces.shrink_to_fit();
         moment.reprojected.resize(std::min(moment.reprojected.size(), moment.pieces.size()));
         moment.reprojected.shrink_to_fit();
