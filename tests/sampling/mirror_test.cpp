@@ -6,10 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#ifdef __GLIBC__
-#include <malloc.h>
-#endif
-
 #include "common/framelet/sample_worth.h"
 #include "server/sampling/mirror/mirror_checks.h"
 #include "tests/sampling/rendered_planes.h"
@@ -515,34 +511,6 @@ TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
         }
     }
 }
-
-#if defined(__GLIBC__) && !defined(FRAMELET_SANITIZE)
-std::size_t bytes_in_use() {
-    struct mallinfo2 const info = ::mallinfo2();
-    return info.uordblks + info.hblkhd;
-}
-
-TEST(Mirror, MomentsThatAreGoneLeaveNoRoomForWholePictures) {
-    Viewport const size{640, 480};
-    ImagePlane const large{size};
-    std::vector<Piece> pieces = render_pieces(large, large.pixel_depth(), wall);
-    Mirror mirror(size);
-    mirror.look({make_view_rays(Camera{}, size), 0}, no_motions);
-    std::size_t const before = bytes_in_use();
-    std::vector<SentTile> sent;
-    for (std::uint64_t i = 1; i <= 2 * FrameletPool::most_moments; ++i) { // as many as it has slots
-        for (Piece& piece : pieces) {
-            piece.of.batch = i;
-            sent.push_back(piece.of);
-        }
-        mirror.add(make_view_rays(camera_at(Vec3(0.01f * static_cast<float>(i), 0, 0)), size), no_motions, pieces);
-    }
-    std::size_t const full = bytes_in_use();
-    mirror.forget(sent);
-    mirror.look({make_view_rays(Camera{}, size), 0}, no_motions);
-    EXPECT_LT(bytes_in_use() - before, (full - before) / 4);
-}
-#endif
 
 } // namespace
 } // namespace framelet
