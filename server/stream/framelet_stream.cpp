@@ -150,8 +150,9 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
 
 /// A moment is of what is to be seen later, if the scene's clock and the viewer's camera go on as they do: of when it
 /// ends or, where all of the picture is replaced, of the middle of the time that it is shown, since its samples come
-/// while it lasts and show until those of the next moment have come. Its camera is ahead of that by what the first
-/// batch of the next moment takes until it is shown: till then what newly comes into view has to be there. Where the
+/// while it lasts and show until those of the next moment have come. A camera of the viewer's own is ahead of that by
+/// what the first batch of the next moment takes until it is shown: till then what newly comes into view has to be
+/// there. Where the
 /// scene is about to jump, the moment is of what comes after that, which shares nothing with what is held, and waits
 /// with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
@@ -159,8 +160,9 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
     double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
+    bool const leads = options_.camera_leads && camera_->scene_camera < 0;
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
-    double camera_ahead = scene_ahead + (options_.camera_leads ? std::min(lead, least_moment_seconds) : 0);
+    double camera_ahead = scene_ahead + (leads ? std::min(lead, least_moment_seconds) : 0);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding
