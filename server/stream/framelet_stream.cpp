@@ -152,9 +152,8 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
 /// ends or, where all of the picture is replaced, of the middle of the time that it is shown, since its samples come
 /// while it lasts and show until those of the next moment have come. A camera of the viewer's own is ahead of that by
 /// what the first batch of the next moment takes until it is shown: till then what newly comes into view has to be
-/// there. Where the
-/// scene is about to jump, the moment is of what comes after that, which shares nothing with what is held, and waits
-/// with the viewer.
+/// there. Where the scene is about to jump, the moment is of what comes after that, which shares nothing with what is
+/// held, and waits with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
     bool const camera_moves = camera_in(least_moment_seconds, turn, scene) != camera_in(0, turn, scene);
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
