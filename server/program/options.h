@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "server/program/log.h"
-#include "server/scene/scene_import.h"
+#include "server/scene/reading/import_options.h"
 #include "server/session/loop/priority.h"
 #include "server/session/server.h"
 

@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "gltf_writer.h"
+#include "server/scene/scene_import.h"
 
 namespace framelet {
 namespace {

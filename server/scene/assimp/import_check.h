@@ -5,8 +5,8 @@
 
 #include <filesystem>
 
+#include "server/scene/reading/import_options.h"
 #include "server/scene/reading/progress.h"
-#include "server/scene/scene_import.h"
 
 namespace framelet {
 
