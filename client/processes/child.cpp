@@ -36,8 +36,7 @@ std::vector<char*> argv_of(std::filesystem::path const& program, std::vector<std
 
 std::filesystem::path find_program(std::string const& name) {
     std::error_code ignored;
-    std::filesystem::path const beside =
-        std::filesystem::read_symlink("/proc/self/exe", ignored).replace_filename(name);
+    std::filesystem::path beside = std::filesystem::read_symlink("/proc/self/exe", ignored).replace_filename(name);
     if (is_program(beside)) {
         return beside;
     }

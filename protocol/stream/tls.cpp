@@ -24,7 +24,7 @@ std::shared_ptr<ssl::context> make_context(SSL_METHOD const* method) {
         throw std::bad_alloc();
     }
     auto context = std::make_shared<ssl::context>(made.get());
-    made.release(); // the context frees it
+    static_cast<void>(made.release()); // the context frees it
     // Earlier versions have suites without forward secrecy; both sides are of one release.
     FRAMELET_CHECK(SSL_CTX_set_min_proto_version(context->native_handle(), TLS1_3_VERSION) == 1);
     SSL_CTX_set_options(context->native_handle(), SSL_OP_NO_RENEGOTIATION | SSL_OP_NO_COMPRESSION);

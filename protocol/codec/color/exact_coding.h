@@ -71,7 +71,7 @@ private:
                 auto const beside = static_cast<std::int8_t>(own - green_left.at(x, y));
                 int const around = std::abs(int{left.at(x - 1, y)}) + std::abs(int{left.at(x, y - 1)});
                 auto const coded = static_cast<std::int8_t>(models[class_of(around)].code(coder, std::int16_t{beside}));
-                left.at(x, y) = coded;
+                left.at(x, y) = std::int16_t{coded};
                 if (Coder::reads) {
                     rows[i] = static_cast<std::uint8_t>(from + coded + green_left.at(x, y));
                 }

@@ -11,7 +11,8 @@ namespace {
 /// a power of two, at most `most`.
 int grid_spacing(Viewport viewport, int least, int most, double cost, double samples) {
     int spacing = least;
-    while (spacing < most && cost * (viewport.width / spacing) * (viewport.height / spacing) > samples) {
+    auto const positions = [&] { return (viewport.width / spacing) * (viewport.height / spacing); };
+    while (spacing < most && cost * positions() > samples) {
         spacing *= 2;
     }
     return spacing;
