@@ -42,7 +42,7 @@ void remember(framelet::Window const& window, framelet::ViewerMemory& memory) {
 
 } // namespace
 
-// NOLINTNEXTLINE(bugprone-exception-escape): what nobody expected ends the program at once, as it would anyway.
+// NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
     using namespace framelet;
     give_back_large_blocks();

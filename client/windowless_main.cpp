@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "common/large_blocks.h"
 
+// NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
     using namespace framelet;
     give_back_large_blocks();

@@ -213,7 +213,7 @@ void serve(Options& options) {
 } // namespace
 } // namespace framelet
 
-// NOLINTNEXTLINE(bugprone-exception-escape): what fails before there is a log ends the program at once.
+// NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
     framelet::give_back_large_blocks();
     std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
