@@ -88,9 +88,9 @@ Picture read_png(std::span<std::byte const> bytes, SizeCheck const& check) {
     auto const height = static_cast<int>(png_get_image_height(reader.png, reader.info));
     check(width, height);
     Picture picture(width, height);
-    std::vector<png_bytep> rows;
-    for (int y = 0; y < height; ++y) {
-        rows.push_back(&picture.rgba[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) * 4]);
+    std::vector<png_bytep> rows(static_cast<std::size_t>(height));
+    for (std::size_t y = 0; y < rows.size(); ++y) {
+        rows[y] = &picture.rgba[y * static_cast<std::size_t>(width) * 4];
     }
     if (!read_rows(reader, rows.data())) {
         throw PngError(source.complaint);

@@ -71,8 +71,8 @@ struct FarthestOfFour {
 /// Makes cells of twice the side, each of the farthest of four.
 template <int n>
 void pull(FarGrid<2 * n> const& fine, FarGrid<n>& coarse) {
-    using T = std::conditional_t<n % lane_count == 0, FloatLanes, std::conditional_t<n == 1, float, HalfFloats>>;
-    constexpr int step = sizeof(T) / sizeof(float);
+    constexpr int step = n % lane_count == 0 ? lane_count : n == 1 ? 1 : lane_count / 2;
+    using T = std::conditional_t<step == lane_count, FloatLanes, std::conditional_t<step == 1, float, HalfFloats>>;
     static_assert(n % step == 0 || n * n == step);
     for (int i = 0; i < n * n; i += step) {
         // The four fine cells of each coarse one.

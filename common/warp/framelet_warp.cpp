@@ -329,8 +329,9 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
         turn_to(framelet.view, outlier.sample.body, outlier.sample.velocity);
         still = still && is_still_;
         double const w = std::max(static_cast<double>(outlier.sample.inverse_depth), 0.0);
-        glm::dvec3 const at = transform_.map(rect_.left + (outlier.index % patch.side + 0.5) * spacing_,
-                                             rect_.top + (outlier.index / patch.side + 0.5) * spacing_, w);
+        int const column = outlier.index % patch.side, row = outlier.index / patch.side;
+        glm::dvec3 const at =
+            transform_.map(rect_.left + (column + 0.5) * spacing_, rect_.top + (row + 0.5) * spacing_, w);
         if (!(at.z > nearest_share)) {
             continue;
         }

@@ -23,7 +23,7 @@ HaarLevels predict(ReferencePicture const& reference, DisplayFramelet const& fra
     Way colocated, alone, moved;
     colocated.prediction.kind = PredictionKind::colocated;
     moved.prediction.kind = PredictionKind::displaced;
-    Way* best = nullptr;
+    Way* best = &alone;
     int least = std::numeric_limits<int>::max();
     // The way that is likely the best one comes first: all others end where they take more.
     auto const consider = [&](Way& way, DisplayValues const& values, int bits_beside) {
