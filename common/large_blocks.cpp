@@ -11,10 +11,8 @@ namespace framelet {
 void give_back_large_blocks() {
 #ifdef __GLIBC__
     constexpr int most_free_bytes = 16 << 20;
-    constexpr int heap_step = 32 << 10; // less than a large block, which would come from the rest of a step
     mallopt(M_MMAP_THRESHOLD, static_cast<int>(least_large_block));
     mallopt(M_TRIM_THRESHOLD, most_free_bytes); // less would be given back and asked for again all the time
-    mallopt(M_TOP_PAD, heap_step);
 #endif
 }
 

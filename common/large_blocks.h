@@ -6,8 +6,8 @@
 
 namespace framelet {
 
-/// Bytes from which on a block is a large one: a square's grid of samples (`MergedSquare`) is, which is the smallest
-/// that comes and goes by the hundred.
+/// Bytes from which on a block is a large one, such as a square's grid of samples (`MergedSquare`). One below 128 KB
+/// still comes from the heap where that has just grown, which is by so much.
 inline constexpr std::size_t least_large_block = 64 << 10;
 
 /// Takes each large block from the system by itself and gives it back when it is freed. Left to itself glibc keeps such

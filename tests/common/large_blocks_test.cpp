@@ -22,8 +22,8 @@ std::size_t resident_bytes() {
 /// Takes 64 MB in blocks, small ones between them, and frees the large ones; the small ones stay.
 void take_and_free(std::vector<std::unique_ptr<Block>>& small) {
     std::vector<Block> large;
-    for (int i = 0; i < 1000; ++i) {
-        large.emplace_back(least_large_block, 'x');
+    for (int i = 0; i < 200; ++i) {
+        large.emplace_back(320 << 10, 'x');
         small.push_back(std::make_unique<Block>(2000, 'x'));
     }
 }
