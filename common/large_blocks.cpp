@@ -16,4 +16,10 @@ void give_back_large_blocks() {
 #endif
 }
 
+void give_back_small_blocks() {
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 } // namespace framelet

@@ -1,5 +1,5 @@
-// Has the C library give back large blocks of memory once they are freed: framelets, pictures and geometry come in
-// blocks that are taken and freed all the time.
+// Has the C library give back memory once it is freed: framelets, pictures and geometry come in blocks that are taken
+// and freed all the time.
 #pragma once
 
 #include <cstddef>
@@ -14,5 +14,10 @@ inline constexpr std::size_t least_large_block = 64 << 10;
 /// blocks once one has been freed, between smaller ones, and a program takes twice the memory after a while. For the
 /// beginning of `main`; where the library is not glibc, nothing happens.
 void give_back_large_blocks();
+
+/// Gives back the pages of free smaller blocks, which the library keeps where others lie behind them. For a program
+/// whose blocks come and go for hours, every few seconds; it takes some milliseconds at most, in which whoever wants
+/// memory may wait.
+void give_back_small_blocks();
 
 } // namespace framelet

@@ -14,6 +14,7 @@
 #include "client/core/session/server_state.h"
 #include "client/core/session/told_evictions.h"
 #include "common/error.h"
+#include "common/large_blocks.h"
 #include "protocol/codec/batch_codec.h"
 
 namespace framelet {
@@ -25,6 +26,9 @@ using Clock = std::chrono::steady_clock;
 double seconds_between(Clock::time_point from, Clock::time_point to) {
     return std::chrono::duration<double>(to - from).count();
 }
+
+/// The time after which memory is given back again.
+constexpr auto give_back_every = std::chrono::seconds(10);
 
 /// Bytes, about, that a batch takes on the wire besides its payloads and one byte for each tile.
 constexpr std::size_t batch_header_bytes = 96;
@@ -38,6 +42,7 @@ struct ClientCore::Impl {
     std::optional<BatchCodec> codec{std::in_place};
     std::optional<BatchMemory> memory{std::in_place};
     bool is_whole = true; ///< every batch that has come is decoded and among `arrived`, or taken in already
+    Clock::time_point given_back = start; ///< when memory was given back last
 
     /// Guards what pictures are made of. Whoever holds it may lock `mutex` as well, not the other way round.
     std::mutex picture_mutex;
@@ -218,6 +223,14 @@ struct ClientCore::Impl {
         tell_news();
     }
 
+    /// Gives back memory that is free now and then: framelets leave theirs in small blocks, others behind them.
+    void give_back_memory(Clock::time_point now) {
+        if (now - given_back >= give_back_every) {
+            give_back_small_blocks();
+            given_back = now;
+        }
+    }
+
     void receive_batch(EncodedBatch const& encoded) {
         Clock::time_point const received = Clock::now();
         Batch batch;
@@ -261,6 +274,7 @@ struct ClientCore::Impl {
             take_in();
         }
         is_whole = true;
+        give_back_memory(decoded);
     }
 
     /// Puts all batches that have arrived into what pictures are made of. Call it with `picture_mutex` held, without
