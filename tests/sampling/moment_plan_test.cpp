@@ -90,6 +90,22 @@ TEST(MomentPlan, TheBusyHalfGetsTheFinerSamples) {
     }
 }
 
+TEST(MomentPlan, FaintDetailGetsSamplesBesideWhatIsBusy) {
+    auto const look = [](float x, float y) {
+        float const contrast = x < 128 ? 0.02f : 0.2f;
+        return Seen{10, 0.5f + contrast * std::sin(1.7f * x) * std::sin(1.3f * y)};
+    };
+    Planner planner;
+    planner.mirror.look(view_at(0), no_motions);
+    planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, look));
+    planner.find(4 * viewport.width * viewport.height);
+    double faint = 0, busy = 0;
+    for (Tile const tile : planner.tiles()) {
+        (plane.tile_rect(tile).left < 128 ? faint : busy) += framelet_samples;
+    }
+    EXPECT_GT(faint, 0.3 * busy);
+}
+
 TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
     Planner planner;
     constexpr double samples = viewport.width * viewport.height;

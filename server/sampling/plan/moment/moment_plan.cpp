@@ -84,6 +84,13 @@ bool stays(Mirror const& mirror, Cell const& cell) {
     return !cell.moves && cell.decorrelation < most_decorrelation;
 }
 
+/// The detail for which a cell counts: the geometric mean of its own and of the picture's. What is known of a cell's
+/// detail is a few differences of samples, which tend to be nearer to the mean than they seem; and a difference is seen
+/// the less the more differs beside it.
+float counted_detail(float detail, float mean) {
+    return std::sqrt(detail * mean);
+}
+
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
 /// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
 float spacing_error(float detail, float spacing) {
@@ -193,7 +200,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
         float const least = gives_way ? -most_error : 0.0f;
         float const too_coarse = gives_way || !cell.is_shown() ? INFINITY : worn_of_step(cell.worn).second;
         float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
-        float const detail = cell.is_shown() ? cell.detail : hidden_detail;
+        float const detail = counted_detail(cell.is_shown() ? cell.detail : hidden_detail, mean_detail_);
         float worn = cell.is_shown() ? cell.worn : INFINITY;
         worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
         float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
