@@ -25,6 +25,8 @@ inline constexpr double max_lag_seconds = 1;
 /// Lag that suffices where a server renders some ten whole frames a second, seconds.
 inline constexpr double usual_lag_seconds = 0.1;
 
+struct ClientSession;
+
 /// All members may be called from any thread; `update_picture` and `draw_overlay` from one at a time. Painting holds
 /// nothing up: what comes meanwhile is decoded and answered, and shows in the next picture.
 class ClientCore {
@@ -112,8 +114,7 @@ public:
     ClientStatistics statistics() const;
 
 private:
-    struct Impl;
-    std::unique_ptr<Impl> impl_;
+    std::unique_ptr<ClientSession> session_;
 };
 
 /// The camera of the scene that a viewer looks through until the user moves: the first one, its animation included; -1

@@ -1,46 +1,17 @@
 #include "server/sampling/mirror/mirror.h"
 
 #include <limits>
-#include <set>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "common/framelet/sample_worth.h"
-#include "server/sampling/mirror/mirror_checks.h"
-#include "tests/sampling/rendered_planes.h"
+#include "tests/sampling/mirror_views.h"
 
 namespace framelet {
 namespace {
 
-constexpr Viewport viewport{128, 96};
-ImagePlane const plane{viewport};
-BodyMotions const no_motions;
-
-Camera camera_at(Vec3 position) {
-    Camera camera;
-    camera.position = position;
-    return camera;
-}
-MirrorView view_at(Vec3 position, SceneTime time = 0) {
-    return {make_view_rays(camera_at(position), viewport), time};
-}
-/// Size of a pixel, metres, of what is a metre away.
-float pixel_size() {
-    return view_at(Vec3(0)).rays.direction_dx.x;
-}
-Seen wall(float, float) {
-    return {};
-}
-std::vector<Cell> cells_of(Mirror const& mirror) {
-    std::vector<Cell> cells;
-    for (int row = 0; row < mirror.rows(); ++row) {
-        for (int column = 0; column < mirror.columns(); ++column) {
-            cells.push_back(mirror.cell(column, row));
-        }
-    }
-    return cells;
-}
+using namespace test;
 
 TEST(Mirror, AStillPictureShowsWhatItWasSent) {
     for (int level = 0; level <= coarsest_levels + finest_levels; ++level) {
@@ -272,117 +243,6 @@ TEST(Mirror, OfOneCameraTheNewestIsHeld) {
     EXPECT_TRUE(mirror.gives_way(mirror.cell(3, 3)));
 }
 
-TEST(Mirror, ABodyCarriesItsPieces) {
-    BodyMotions motions;
-    BodyTrack track;
-    track.body = 1;
-    track.first_key = 0;
-    for (int key = 0; key <= body_keys_per_second; ++key) {
-        BodyPose pose;
-        pose.translation.x = static_cast<float>(key) / body_keys_per_second * 32 * 10 * pixel_size();
-        track.keys.push_back(pose);
-    }
-    motions.extend(track);
-    auto const half = [](float x, float) { return Seen{10, 0.5f, x < 64 ? BodyNumber{1} : static_body}; };
-    Mirror mirror(viewport);
-    mirror.look(view_at(Vec3(0)), motions);
-    mirror.add(view_at(Vec3(0)).rays, motions, render_pieces(plane, plane.pixel_depth(), half));
-    mirror.look(view_at(Vec3(0), 1), motions); // 32 pixels to the right
-    EXPECT_NEAR(summary_of(mirror).holes, 32.0 / viewport.width, 0.02);
-    EXPECT_EQ(mirror.cell(2, 4).covered, 0);
-}
-
-/// A square of 32 pixels that goes 32 pixels a second to the right, 2.5 metres away, before a wall.
-BodyMotions sliding() {
-    BodyMotions motions;
-    BodyTrack track{1, 0, {}};
-    for (int key = 0; key <= 4 * body_keys_per_second; ++key) {
-        BodyPose pose;
-        pose.translation.x = static_cast<float>(key) / body_keys_per_second * 32 * 2.5f * pixel_size();
-        track.keys.push_back(pose);
-    }
-    motions.extend(track);
-    return motions;
-}
-Look slid(SceneTime time) {
-    return [time](float x, float y) {
-        float const at = x - 32 * static_cast<float>(time);
-        return at >= 16 && at < 48 && y >= 32 && y < 64 ? Seen{2.5f, 0.1f, 1} : Seen{};
-    };
-}
-/// Number of the 64 cells of the square at a time that show it.
-int square_cells(Mirror const& mirror, SceneTime time) {
-    int count = 0;
-    for (int row = 8; row < 16; ++row) {
-        for (int column = 4; column < 12; ++column) {
-            Cell const& cell = mirror.cell(column + static_cast<int>(8 * time), row);
-            count += cell.inverse_depth > 0.3f ? 1 : 0;
-        }
-    }
-    return count;
-}
-
-TEST(Mirror, ABodyBeforeAStandingCameraIsHeldAndSoIsWhatItCovers) {
-    BodyMotions const motions = sliding();
-    Mirror mirror(viewport);
-    auto const part = [&](SceneTime time, std::uint64_t batch, bool of_square) {
-        std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth(), slid(time), time, batch);
-        auto const is_left = [](Piece const& piece) { return piece.centre.x < 48; };
-        if (of_square) {
-            std::erase_if(pieces, [](Piece const& piece) { return !piece.moves; });
-        } else {
-            std::erase_if(pieces, [&](Piece const& piece) { return !is_left(piece); });
-        }
-        return pieces;
-    };
-    mirror.look(view_at(Vec3(0), 0), motions);
-    mirror.add(view_at(Vec3(0)).rays, motions, render_pieces(plane, plane.pixel_depth(), wall, 0, 1));
-    mirror.look(view_at(Vec3(0), 0.5), motions);
-    mirror.add(view_at(Vec3(0)).rays, motions, part(0.5, 2, true));
-    EXPECT_EQ(square_cells(mirror, 0.5), 64);
-    EXPECT_FALSE(mirror.gives_way(mirror.cell(10, 10))) << "what comes need not move";
-    EXPECT_TRUE(mirror.gives_way(mirror.cell(1, 1)));
-    mirror.look(view_at(Vec3(0), 1.5), motions);
-    EXPECT_EQ(square_cells(mirror, 1.5), 64);
-    EXPECT_EQ(summary_of(mirror).holes, 0) << "the wall that it covered is held";
-    mirror.add(view_at(Vec3(0)).rays, motions, part(1.5, 3, false)); // its old place, of which it has gone
-    mirror.look(view_at(Vec3(0), 2), motions);
-    EXPECT_EQ(square_cells(mirror, 2), 64);
-    mirror.settle();
-    mirror.look(view_at(Vec3(0), 2), motions);
-    EXPECT_LT(square_cells(mirror, 2), 64) << "at one place the newest is held";
-    EXPECT_TRUE(mirror.gives_way(mirror.cell(1, 1)));
-}
-
-TEST(Mirror, WhatRestsGivesWayAndLeavesAHoleWhenItSetsOut) {
-    BodyMotions motions = sliding();
-    BodyTrack track{1, 0, {}};
-    for (int key = 0; key <= 4 * body_keys_per_second; ++key) {
-        float const time = std::max(static_cast<float>(key) / body_keys_per_second - 2, 0.0f);
-        track.keys.push_back({Vec3(time * 32 * 2.5f * pixel_size(), 0, 0), {1, 0, 0, 0}, Vec3(1)});
-    }
-    motions.extend(track);
-    auto const resting = [&](SceneTime time, std::uint64_t batch) {
-        std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth(), slid(0), time, batch);
-        std::ranges::for_each(pieces, [](Piece& piece) { piece.rests = true; });
-        return pieces;
-    };
-    Mirror mirror(viewport);
-    mirror.look(view_at(Vec3(0), 0), motions);
-    mirror.add(view_at(Vec3(0)).rays, motions, resting(0, 1));
-    mirror.look(view_at(Vec3(0), 1), motions);
-    EXPECT_TRUE(mirror.gives_way(mirror.cell(10, 10)));
-    EXPECT_EQ(summary_of(mirror).holes, 0);
-    mirror.add(view_at(Vec3(0)).rays, motions, resting(1, 2));
-    EXPECT_TRUE(mirror.gives_way(mirror.cell(10, 10)));
-    mirror.look(view_at(Vec3(0), 1.5), motions);
-    EXPECT_EQ(mirror.piece_of(mirror.cell(10, 10)).of.batch, 2U);
-    EXPECT_EQ(square_cells(mirror, 0), 64);
-    mirror.look(view_at(Vec3(0), 3), motions);
-    EXPECT_EQ(square_cells(mirror, 1), 64);
-    EXPECT_EQ(mirror.cell(6, 10).covered, 0) << "nothing is held of the wall that it stood before";
-}
-
 TEST(Mirror, KeepsTheNewestMoments) {
     // Each moment has a camera of its own, hardly moved, and one tile.
     constexpr int moments = 100, columns = viewport.width / 16, tiles = columns * viewport.height / 16;
@@ -420,78 +280,6 @@ TEST(Mirror, ForgetsWhatTheViewerEvicted) {
     EXPECT_NEAR(summary_of(mirror).holes * viewport.width * viewport.height, rect.width() * rect.height(), 80)
         << "a margin of half a pixel";
     EXPECT_FALSE(mirror.cell((rect.left + 8) / cell_side, (rect.top + 8) / cell_side).is_shown());
-}
-
-TEST(Mirror, SomethingNearerThanWhatShowsIsWrongUntilItComes) {
-    Mirror mirror(viewport);
-    mirror.look(view_at(Vec3(0)), no_motions);
-    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall)); // at 10 metres
-    RayGrid const grid = cell_grid(cell_side, 8, 1);
-    std::size_t const columns = static_cast<std::size_t>(grid.columns(viewport));
-    std::vector<float> seen(columns * static_cast<std::size_t>(grid.rows(viewport)), 0.1f);
-    mirror.look(view_at(Vec3(1e-4f, 0, 0)), no_motions);
-    EXPECT_FALSE(mirror.mark(find_wrong(mirror, grid, seen)));
-    seen[5 * columns + 6] = -1; // not known
-    seen[5 * columns + 7] = 0.05f; // farther
-    seen[4 * columns + 4] = 0.11f; // hardly nearer
-    EXPECT_FALSE(mirror.mark(find_wrong(mirror, grid, seen)));
-    seen[3 * columns + 2] = 0.5f;
-    EXPECT_TRUE(mirror.mark(find_wrong(mirror, grid, seen)));
-    auto const wrong = [&] {
-        return std::ranges::count_if(cells_of(mirror), [](Cell const& cell) { return cell.is_wrong; });
-    };
-    EXPECT_EQ(wrong(), 4) << "a square of the grid";
-    mirror.add(view_at(Vec3(1e-4f, 0, 0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
-    EXPECT_EQ(wrong(), 0) << "that is what it looks like now";
-}
-
-TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
-    MirrorView const later = view_at(Vec3(0), 1);
-    RayGrid const grid = cell_grid(cell_side, 16, 0);
-    auto const lamp = [](float x, float) { return Seen{10, x < 64 ? 0.9f : 0.5f}; };
-    Mirror mirror(viewport);
-    mirror.look(view_at(Vec3(0)), no_motions);
-    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
-    std::vector<Probe> probes;
-    list_probes(mirror, grid, probes);
-    EXPECT_TRUE(probes.empty()) << "what is of the moment needs none";
-    mirror.look(later, no_motions);
-    list_probes(mirror, grid, probes);
-    ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
-    std::vector<float> luma;
-    for (Probe const& probe : probes) {
-        EXPECT_NEAR(probe.luma, 0.5f, 4e-3f);
-        luma.push_back(probe.luma);
-    }
-    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
-    for (std::size_t i = 0; i < probes.size(); ++i) {
-        luma[i] = lamp(probes[i].position.x, probes[i].position.y).luma;
-    }
-    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
-    for (int y = 0; y < viewport.height - 16; y += cell_side) {
-        for (int x = 0; x < viewport.width; x += cell_side) {
-            if (x < 48 || x >= 72) { // the squares of probes on both sides of the change
-                EXPECT_NEAR(mirror.cell(x / cell_side, y / cell_side).stale, x < 64 ? 0.16f : 0, 4e-3f);
-            }
-        }
-    }
-    mirror.add(later.rays, no_motions, render_pieces(plane, plane.pixel_depth(), lamp, 2, 1));
-    EXPECT_TRUE(std::ranges::all_of(cells_of(mirror), [](Cell const& cell) { return cell.stale == 0; }));
-}
-
-TEST(RayGrid, EveryCellHasItsTurn) {
-    for (int const spacing : {4, 8, 16}) {
-        std::set<std::pair<float, float>> firsts;
-        auto const turns = static_cast<std::uint32_t>(spacing / 4 * (spacing / 4));
-        for (std::uint32_t turn = 0; turn < turns; ++turn) {
-            RayGrid const grid = cell_grid(4, spacing, turn);
-            firsts.insert({grid.first.x, grid.first.y});
-            EXPECT_LT(grid.first.x, static_cast<float>(spacing));
-            EXPECT_GE(grid.columns({5, 5}) * grid.rows({5, 5}), grid.first.x < 5 && grid.first.y < 5 ? 1 : 0);
-        }
-        EXPECT_EQ(firsts.size(), turns);
-        EXPECT_EQ(cell_grid(4, spacing, turns).first, cell_grid(4, spacing, 0).first);
-    }
 }
 
 TEST(Mirror, HostileViewsAndDepthsDoNoHarm) {
