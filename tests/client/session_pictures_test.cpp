@@ -95,6 +95,20 @@ TEST(PictureMaker, WhatWaitsIsShownOnceNothingElseIsToCome) {
     EXPECT_EQ(at_time(shown, 1), 80);
 }
 
+TEST(PictureMaker, WhatAFastServerRendersBeforeAJumpWaits) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(at_time(shown, 1), 50);
+    Batch later = left_of(100, 80);
+    later.shown_from = 1.4;
+    std::size_t const samples = later.framelets.size() * framelet_samples;
+    for (std::size_t sent = 0; sent < 20 * std::size_t{100 * 60}; sent += samples) {
+        shown.insert(later);
+    }
+    EXPECT_EQ(at_time(shown, 1.39), 50);
+    EXPECT_EQ(at_time(shown, 1.4), 80);
+}
+
 TEST(PictureMaker, AServerThatMakesItWaitForEverDoesNotFillIt) {
     Shown shown;
     shown.insert(left_of(100, 50));

@@ -61,7 +61,7 @@ void PictureMaker::insert(Batch const& batch) {
     }
     waiting_.push_back(batch);
     waiting_framelets_ += batch.framelets.size();
-    constexpr std::size_t most_samples = 4; // samples a pixel: no moment is rendered with more before a jump
+    constexpr std::size_t most_samples = 24; // samples a pixel: a moment has no more in all its levels together
     auto const pixels = static_cast<std::size_t>(viewport().width) * static_cast<std::size_t>(viewport().height);
     if (waiting_framelets_ * framelet_samples > most_samples * pixels) {
         take_waiting(waiting_.size());
