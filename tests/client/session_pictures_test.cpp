@@ -51,6 +51,13 @@ struct Shown {
     }
 };
 
+/// A batch of the whole picture that is not to be shown before that time.
+Batch waiting_until(SceneTime time) {
+    Batch batch = left_of(100, 80);
+    batch.shown_from = time;
+    return batch;
+}
+
 /// The value near the left edge of the picture that is shown at this scene time.
 int at_time(Shown& shown, SceneTime time) {
     shown.request.present = time;
@@ -61,9 +68,8 @@ TEST(PictureMaker, WhatIsNotToBeShownYetWaits) {
     Shown shown;
     shown.insert(left_of(100, 50));
     EXPECT_EQ(at_time(shown, 1), 50);
-    Batch later = left_of(100, 80);
+    Batch later = waiting_until(1.4);
     later.scene_time = 1.5;
-    later.shown_from = 1.4;
     shown.insert(later);
     EXPECT_EQ(at_time(shown, 1.3), 50);
     EXPECT_EQ(at_time(shown, 1.4), 80);
@@ -75,8 +81,7 @@ TEST(PictureMaker, WhatWaitsIsShownBeforeWhatComesAfterIt) {
     Shown shown;
     shown.insert(left_of(100, 50));
     EXPECT_EQ(at_time(shown, 1), 50);
-    Batch later = left_of(100, 80);
-    later.shown_from = 9;
+    Batch const later = waiting_until(9);
     shown.insert(later);
     EXPECT_EQ(at_time(shown, 1), 50);
     shown.insert(left_of(64, 70));
@@ -87,8 +92,7 @@ TEST(PictureMaker, WhatWaitsIsShownBeforeWhatComesAfterIt) {
 TEST(PictureMaker, WhatWaitsIsShownOnceNothingElseIsToCome) {
     Shown shown;
     shown.insert(left_of(100, 50));
-    Batch later = left_of(100, 80);
-    later.shown_from = 9;
+    Batch const later = waiting_until(9);
     EXPECT_EQ(at_time(shown, 1), 50);
     shown.insert(later);
     shown.request.is_settled = true;
@@ -99,8 +103,7 @@ TEST(PictureMaker, WhatAFastServerRendersBeforeAJumpWaits) {
     Shown shown;
     shown.insert(left_of(100, 50));
     EXPECT_EQ(at_time(shown, 1), 50);
-    Batch later = left_of(100, 80);
-    later.shown_from = 1.4;
+    Batch const later = waiting_until(1.4);
     std::size_t const samples = later.framelets.size() * framelet_samples;
     for (std::size_t sent = 0; sent < 20 * std::size_t{100 * 60}; sent += samples) {
         shown.insert(later);
@@ -113,8 +116,7 @@ TEST(PictureMaker, AServerThatMakesItWaitForEverDoesNotFillIt) {
     Shown shown;
     shown.insert(left_of(100, 50));
     EXPECT_EQ(at_time(shown, 1), 50);
-    Batch later = left_of(100, 80);
-    later.shown_from = 1e9;
+    Batch const later = waiting_until(1e9);
     std::size_t most = 0;
     for (int i = 0; i < 200; ++i) {
         shown.insert(later);

@@ -26,7 +26,7 @@ private:
     static constexpr double weight = 0.2;
     /// Deviations that are added to the mean: before a camera at 20 m/s a picture that is 3 ms late is wrong by pixels.
     static constexpr double sure_deviations = 3, least_deviations = 0.5;
-    static constexpr double enough = 1.0 / 36; ///< seconds: as many pictures a second look smooth
+    static constexpr double enough = 1.0 / 36; ///< seconds: 36 pictures a second leave 30 where some take longer
     static constexpr double most = 0.1; ///< seconds; what takes longer is late anyway
 
     double mean_ = 0;
