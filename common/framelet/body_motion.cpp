@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <optional>
 #include <span>
 
 #include <glm/gtc/quaternion.hpp>
@@ -26,6 +27,33 @@ Motion placement(BodyPose const& pose) {
         linear[axis] *= static_cast<double>(pose.scale[axis]);
     }
     return {linear, glm::dvec3(pose.translation)};
+}
+
+/// The rotation of a body from one key to the next about a time; none where there are not two keys.
+glm::dquat turn_at(BodyTrack const& track, SceneTime time) {
+    if (track.keys.size() < 2) {
+        return glm::identity<glm::dquat>();
+    }
+    auto const index = std::min(static_cast<std::size_t>(key_at(track, time)), track.keys.size() - 2);
+    glm::dquat const turn =
+        glm::dquat(track.keys[index + 1].rotation) * glm::dquat(glm::conjugate(track.keys[index].rotation));
+    return turn.w < 0 ? -turn : turn;
+}
+
+/// The rotation that takes a body's axle from where it points at `from` to where it points at `to`; nothing where the
+/// body does not spin at both times.
+std::optional<glm::dquat> turn_of_axle(BodyTrack const& track, SceneTime from, SceneTime to) {
+    glm::dquat const before = turn_at(track, from);
+    glm::dquat const after = turn_at(track, to);
+    if (!(std::min(glm::angle(before), glm::angle(after)) >= least_spin)) {
+        return std::nullopt;
+    }
+    glm::dvec3 const axle = glm::axis(before);
+    double const cosine = glm::dot(axle, glm::axis(after));
+    if (cosine < 0) { // it spins the other way by now
+        return std::nullopt;
+    }
+    return glm::normalize(glm::dquat(1 + cosine, glm::cross(axle, glm::axis(after))));
 }
 
 bool is_finite(Motion const& motion) {
@@ -61,9 +89,14 @@ BodyPose pose_at(BodyTrack const& track, SceneTime time) {
 
 Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to) {
     BodyPose const before = pose_at(track, from);
-    BodyPose const after = pose_at(track, to);
+    BodyPose after = pose_at(track, to);
     if (before == after) {
         return {};
+    }
+    if (before.translation != after.translation) { // what spins in place would else seem to stand
+        if (auto const turn = turn_of_axle(track, from, to)) {
+            after.rotation = glm::quat(*turn * glm::dquat(before.rotation));
+        }
     }
     Motion const source = placement(before);
     Motion const target = placement(after);

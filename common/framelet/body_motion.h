@@ -18,6 +18,9 @@ namespace framelet {
 /// first key, it rests.
 inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
+/// Rotation from one key to the next, radians, from which on a body spins: that is 30 a second, which no eye follows.
+inline constexpr double least_spin = 0.5;
+
 /// Keys that a viewer keeps of a body: half a minute.
 inline constexpr std::size_t kept_track_keys = 30 * body_keys_per_second;
 /// Keys that a viewer keeps of all bodies together, however many a server says there are: of more than a thousand
@@ -36,8 +39,10 @@ struct Motion {
 /// shorter arc. A track without keys rests at the origin.
 BodyPose pose_at(BodyTrack const& track, SceneTime time);
 
-/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. Exactly the identity
-/// where the poses are equal; the identity, too, where a scale of 0 leaves it undefined.
+/// The motion that takes a point of the body from where it is at `from` to where it is at `to`. What spins as it goes,
+/// as wheels do, only follows its axle: its samples would be carried behind what hides a part of it, and leave gaps
+/// where they were, while others of its surface have come in their place. Exactly the identity where the poses are
+/// equal; the identity, too, where a scale of 0 leaves it undefined.
 Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 
 /// The tracks of all bodies that a viewer knows.

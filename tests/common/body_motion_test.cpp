@@ -1,5 +1,6 @@
 #include "common/framelet/body_motion.h"
 
+#include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -68,6 +69,48 @@ TEST(BodyMotion, MovesPointsOfTheBody) {
         };
         EXPECT_LT(glm::distance(move(motion_between(track, from, to), position_at(from)), position_at(to)), 1e-5);
     }
+}
+
+TEST(BodyMotion, WhatSpinsAsItGoesFollowsItsAxle) {
+    // A car turns about +Z by 2 radians a second; the axle of its wheel is its own +Y.
+    auto const car_turn = [](double time) { return glm::angleAxis(2 * time, glm::dvec3(0, 0, 1)); };
+    auto const wheel_of_car = [&](double speed, std::int64_t spins_until) {
+        BodyTrack track{7, 0, {}};
+        for (std::int64_t i = 0; i < 60; ++i) {
+            double const time = static_cast<double>(i) * key_seconds;
+            double const spun = speed * static_cast<double>(std::min(i, spins_until)) * key_seconds;
+            track.keys.push_back({Vec3(20 * static_cast<float>(time), 0, 0),
+                                  glm::quat(car_turn(time) * glm::angleAxis(spun, glm::dvec3(0, 1, 0))), Vec3(0.3f)});
+        }
+        return track;
+    };
+    double const from = 0.2, to = 0.35;
+    glm::dquat const turn = car_turn(to) * glm::conjugate(car_turn(from));
+    for (double const speed : {40.0, -66.0, 100.0}) {
+        Motion const motion = motion_between(wheel_of_car(speed, 60), from, to);
+        glm::dvec3 const axle = car_turn(from) * glm::dvec3(0, 1, 0);
+        glm::dvec3 const tread = car_turn(from) * glm::dvec3(0.3, 0, 0);
+        glm::dvec3 const centre(20 * from, 0, 0);
+        EXPECT_LT(glm::distance(move(motion, centre), glm::dvec3(20 * to, 0, 0)), 1e-5);
+        EXPECT_LT(glm::distance(motion.linear * axle, turn * axle), 0.05) << speed; // the car turns meanwhile
+        EXPECT_LT(glm::distance(motion.linear * tread, turn * tread), 0.05) << speed;
+        EXPECT_NEAR(glm::determinant(motion.linear), 1, 1e-5);
+    }
+    auto const spoke_moved = [&](BodyTrack const& track) {
+        glm::dvec3 const spoke = glm::dquat(pose_at(track, from).rotation) * glm::dvec3(1, 0, 0);
+        glm::dvec3 const there = glm::dquat(pose_at(track, to).rotation) * glm::dvec3(1, 0, 0);
+        return glm::distance(motion_between(track, from, to).linear * spoke, there);
+    };
+    EXPECT_LT(spoke_moved(wheel_of_car(25, 60)), 1e-5) << "an eye can follow it";
+    EXPECT_LT(spoke_moved(wheel_of_car(66, 15)), 1e-5) << "it has come to rest by then";
+    BodyTrack fan = wheel_of_car(66, 60);
+    for (BodyPose& pose : fan.keys) {
+        pose.translation = Vec3(1);
+    }
+    EXPECT_LT(spoke_moved(fan), 1e-5) << "it stays where it is";
+    BodyTrack turned = wheel_of_car(66, 60);
+    std::reverse(turned.keys.begin() + 16, turned.keys.end());
+    EXPECT_LT(spoke_moved(turned), 1e-5) << "it spins the other way by then";
 }
 
 TEST(BodyMotion, RestIsExactlyNoMotion) {
