@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include <glm/geometric.hpp>
+
 #include "common/clock_state.h"
 #include "common/error.h"
 
@@ -148,20 +150,36 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
     return camera_moves && !jumps ? seconds : least_moment_seconds;
 }
 
+/// Seconds by which a moment's camera is ahead of the moment: what the first batch of the next one takes until it is
+/// shown, since till then what newly comes into view has to be there. A camera of the scene has no lead unless it
+/// turns, when much comes into view; as it is known where that goes, it is given the time, too, that a picture takes
+/// the viewer, which is about as long again.
+double FrameletStream::camera_lead(Turn const& turn, PosedScene& scene) const {
+    constexpr double least_turn = 0.02; // radians within the least moment's length
+    if (!options_.camera_leads) {
+        return 0;
+    }
+    double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
+    double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
+    if (camera_->scene_camera < 0) {
+        return std::min(lead, least_moment_seconds);
+    }
+    Vec3 const now = camera_in(0, turn, scene).forward();
+    Vec3 const then = camera_in(least_moment_seconds, turn, scene).forward();
+    bool const turns = static_cast<double>(glm::length(glm::cross(now, then))) > std::sin(least_turn);
+    bool const jumps = switches_ahead(turn, scene, awaited_seconds + least_moment_seconds).any;
+    return turns && !jumps ? std::min(2 * lead, least_moment_seconds) : 0;
+}
+
 /// A moment is of what is to be seen later, if the scene's clock and the viewer's camera go on as they do: of when it
 /// ends or, where all of the picture is replaced, of the middle of the time that it is shown, since its samples come
-/// while it lasts and show until those of the next moment have come. A camera of the viewer's own is ahead of that by
-/// what the first batch of the next moment takes until it is shown: till then what newly comes into view has to be
-/// there. Where the scene is about to jump, the moment is of what comes after that, which shares nothing with what is
-/// held, and waits with the viewer.
+/// while it lasts and show until those of the next moment have come. Where the scene is about to jump, the moment is of
+/// what comes after that, which shares nothing with what is held, and waits with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
     bool const camera_moves = camera_in(least_moment_seconds, turn, scene) != camera_in(0, turn, scene);
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
-    double const batch_seconds = 0.5 * cycle_length(false, turn.plan_seconds);
-    double const lead = turn.plan_seconds + batch_seconds + link_.state().delivery_seconds;
-    bool const leads = options_.camera_leads && camera_->scene_camera < 0;
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
-    double camera_ahead = scene_ahead + (leads ? std::min(lead, least_moment_seconds) : 0);
+    double camera_ahead = scene_ahead + camera_lead(turn, scene);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding

@@ -136,6 +136,43 @@ TEST(FrameletStream, AMomentsCameraIsAheadOfIt) {
     EXPECT_NEAR(rendered_ahead(0, {.looks_ahead = false, .camera_leads = false}), 0, 1e-4);
 }
 
+/// The scene that jumps after a second, with a camera that turns about +Y at `speed` radians a second till then.
+Scene turning_scene(float speed) {
+    Scene scene = jumping_scene();
+    scene.nodes.emplace_back();
+    scene.cameras.push_back({"turning", 1, Projection::perspective, 0.8f});
+    AnimationChannel channel{1, AnimatedProperty::rotation, Interpolation::linear, 4, {}, {}};
+    for (int key = 0; key <= 20; ++key) {
+        float const time = 0.1f * static_cast<float>(key);
+        Quat const turn = glm::angleAxis(speed * (time < 1 ? time : 0.0f), Vec3(0, 1, 0));
+        channel.times.push_back(time);
+        channel.values.insert(channel.values.end(), {turn.x, turn.y, turn.z, turn.w});
+    }
+    scene.clips[0].channels.push_back(channel);
+    return scene;
+}
+
+/// Seconds by which the camera of the moment that begins at `present` is ahead of it, which turns so fast.
+double turned_ahead(float speed, double plan_seconds, SceneTime present = 0.3, StreamOptions const& options = {}) {
+    Served served(options, turning_scene(speed));
+    served.stream.take({0, CameraUpdate{{1, {}, {64, 48}}, 0}});
+    EXPECT_EQ(served.plan(0, present, 1, plan_seconds), Step::render);
+    served.stream.render(served.posed);
+    EXPECT_TRUE(served.stream.learn(served.posed));
+    Vec3 const forward = served.stream.learnt_batch().view.camera.forward();
+    return std::atan2(-forward.x, -forward.z) / speed - served.stream.learnt_batch().scene_time;
+}
+
+TEST(FrameletStream, ACameraOfTheSceneIsAheadOnlyWhereItTurns) {
+    double const lead = 0.01 + 0.5 * cycle_length(false, 0.01); // nothing has been delivered yet
+    EXPECT_NEAR(turned_ahead(1, 0.01), 2 * lead, 1e-4);
+    EXPECT_NEAR(turned_ahead(-1, 0.01), 2 * lead, 1e-4);
+    EXPECT_NEAR(turned_ahead(1, 10), least_moment_seconds, 1e-4);
+    EXPECT_NEAR(turned_ahead(0.1f, 0.01), 0, 1e-3);
+    EXPECT_NEAR(turned_ahead(1, 0.01, 0.75), 0, 1e-4) << "it is not ahead of a jump that the moment is before";
+    EXPECT_NEAR(turned_ahead(1, 0.01, 0.3, {.camera_leads = false}), 0, 1e-4);
+}
+
 /// Number of framelets of all batches until nothing is left to do. All must be for a viewer that holds what it was sent
 /// since this view.
 std::size_t sent_until_complete(Served& served, std::uint64_t held_since) {
