@@ -50,7 +50,7 @@ std::optional<glm::dquat> turn_of_axle(BodyTrack const& track, SceneTime from, S
     }
     glm::dvec3 const axle = glm::axis(before);
     double const cosine = glm::dot(axle, glm::axis(after));
-    if (cosine < 0) { // it spins the other way by now
+    if (!(cosine >= 0)) { // it spins the other way by then, or its poses are none
         return std::nullopt;
     }
     return glm::normalize(glm::dquat(1 + cosine, glm::cross(axle, glm::axis(after))));

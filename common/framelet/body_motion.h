@@ -18,7 +18,7 @@ namespace framelet {
 /// first key, it rests.
 inline constexpr SceneTime max_pose_extrapolation_seconds = 0.1;
 
-/// Rotation from one key to the next, radians, from which on a body spins: that is 30 a second, which no eye follows.
+/// Rotation from one key to the next, radians, from which on a body spins: 30 radians a second, which no eye follows.
 inline constexpr double least_spin = 0.5;
 
 /// Keys that a viewer keeps of a body: half a minute.
