@@ -153,8 +153,9 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
 /// Seconds by which a moment's camera is ahead of the moment: what the first batch of the next one takes until it is
 /// shown, since till then what newly comes into view has to be there. A camera of the scene has no lead unless it
 /// turns, when much comes into view; as it is known where that goes, it is given the time, too, that a picture takes
-/// the viewer, which is about as long again.
-double FrameletStream::camera_lead(Turn const& turn, PosedScene& scene) const {
+/// the viewer, which is about as long again. `now`, `then`: the camera at present and after the least moment's length.
+double FrameletStream::camera_lead(Camera const& now, Camera const& then, Turn const& turn,
+                                   PosedScene const& scene) const {
     constexpr double least_turn = 0.02; // radians within the least moment's length
     if (!options_.camera_leads) {
         return 0;
@@ -164,9 +165,8 @@ double FrameletStream::camera_lead(Turn const& turn, PosedScene& scene) const {
     if (camera_->scene_camera < 0) {
         return std::min(lead, least_moment_seconds);
     }
-    Vec3 const now = camera_in(0, turn, scene).forward();
-    Vec3 const then = camera_in(least_moment_seconds, turn, scene).forward();
-    bool const turns = static_cast<double>(glm::length(glm::cross(now, then))) > std::sin(least_turn);
+    bool const turns =
+        static_cast<double>(glm::length(glm::cross(now.forward(), then.forward()))) > std::sin(least_turn);
     bool const jumps = switches_ahead(turn, scene, awaited_seconds + least_moment_seconds).any;
     return turns && !jumps ? std::min(2 * lead, least_moment_seconds) : 0;
 }
@@ -176,10 +176,12 @@ double FrameletStream::camera_lead(Turn const& turn, PosedScene& scene) const {
 /// while it lasts and show until those of the next moment have come. Where the scene is about to jump, the moment is of
 /// what comes after that, which shares nothing with what is held, and waits with the viewer.
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
-    bool const camera_moves = camera_in(least_moment_seconds, turn, scene) != camera_in(0, turn, scene);
+    Camera const now = camera_in(0, turn, scene);
+    Camera const then = camera_in(least_moment_seconds, turn, scene);
+    bool const camera_moves = then != now;
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
-    double camera_ahead = scene_ahead + camera_lead(turn, scene);
+    double camera_ahead = scene_ahead + camera_lead(now, then, turn, scene);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding

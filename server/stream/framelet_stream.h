@@ -25,7 +25,7 @@ struct StreamOptions {
     std::optional<double> moment_seconds{}; ///< how long a moment lasts; nothing: as long as is best
     bool looks_ahead = true; ///< a moment is of when it is shown, not of when it begins
     bool awaits_switches = true; ///< a moment is of what comes after a jump that is near, and shown from then on
-    bool camera_leads = true; ///< a moment's camera is ahead of it by what its first batch takes until it is shown
+    bool camera_leads = true; ///< the camera of a moment is ahead of it, where that helps
     bool knows_rest = true; ///< what rests is held as what stands
 };
 
@@ -64,7 +64,7 @@ private:
     Switches switches_ahead(Turn const& turn, PosedScene const& scene, double seconds) const;
     double samples_per_second(Turn const& turn) const;
     Camera camera_in(double seconds, Turn const& turn, PosedScene& scene) const;
-    double camera_lead(Turn const& turn, PosedScene& scene) const;
+    double camera_lead(Camera const& now, Camera const& then, Turn const& turn, PosedScene const& scene) const;
     double new_moment_seconds(bool camera_moves, Turn const& turn, PosedScene const& scene) const;
     HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
     std::optional<HeldMoment> moment_at(Turn const& turn, ViewState const& present, PosedScene& scene);

@@ -1,6 +1,7 @@
 #include "common/framelet/body_motion.h"
 
 #include <algorithm>
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -179,6 +180,10 @@ TEST(BodyMotion, DegenerateTracksAreFinite) {
     BodyTrack flat = wheel(1, 0, 2);
     flat.keys[0].scale = Vec3(1, 0, 1);
     EXPECT_EQ(motion_between(flat, 0, 1), Motion{});
+    BodyTrack spinning = wheel(66, 0, 20);
+    spinning.keys[9].rotation.x = NAN;
+    EXPECT_NE(motion_between(spinning, 0, 8 * key_seconds), Motion{}) << "both poses are whole";
+    EXPECT_EQ(motion_between(spinning, 0, 8.5 * key_seconds), Motion{});
     EXPECT_EQ(pose_at({1, 5, {BodyPose{Vec3(1)}}}, 1).translation, Vec3(1));
 }
 
