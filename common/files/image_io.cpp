@@ -16,6 +16,7 @@
 #include "common/error.h"
 #include "common/files/picture_header.h"
 #include "common/files/png_reader.h"
+#include "common/files/tga_palette.h"
 
 namespace framelet {
 namespace {
@@ -106,6 +107,9 @@ public:
         }
         if (format == PictureFormat::bmp && is_run_length_coded(bytes)) {
             fail(name, "it is a BMP with run-length coding, which is not read: save it without, or as PNG");
+        }
+        if (char const* const problem = format == PictureFormat::tga ? tga_palette_problem(bytes) : nullptr) {
+            fail(name, problem);
         }
         open(reader_name(format));
         PictureSize const opened{spec().width, spec().nchannels < 1 ? 0 : spec().height};

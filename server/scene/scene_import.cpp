@@ -6,11 +6,11 @@
 
 #include "common/error.h"
 #include "server/scene/assimp/assimp_import.h"
-#include "server/scene/assimp/import_check.h"
 #include "server/scene/finish/scene_finish.h"
 #include "server/scene/gltf/gltf_import.h"
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/import_budget.h"
+#include "server/scene/reading/import_check.h"
 #include "server/scene/reading/scene_folder.h"
 #include "server/scene/scene_merge.h"
 
@@ -70,7 +70,7 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
         std::string const extension = lower_extension(file);
         SceneFolder const folder(file, options.allow_outside);
         bool const is_gltf = extension == ".gltf" || extension == ".glb";
-        bool const is_checked = !is_gltf && !options.checker.empty();
+        bool const is_checked = !options.checker.empty();
         if (is_checked) {
             ImportOptions of_file = options;
             of_file.memory_bytes = budget.left();

@@ -204,5 +204,37 @@ TEST(ImageIo, RunLengthsOfBmpAreRefused) {
     EXPECT_NE(failure_of(bmp, "a.bmp").find("run-length"), std::string::npos);
 }
 
+/// A TGA file of 2x2 pixels with a palette of so many colours, the first of which has this number. `pixels`: an entry
+/// each, the lower row first.
+std::string tga_with_palette(std::uint32_t first, std::uint32_t entries, std::uint32_t index_bits,
+                             std::string const& pixels, bool is_packed = false, std::uint32_t entry_bits = 24) {
+    std::string const colours = "abcdefghi";
+    return std::string({'\0', '\1', is_packed ? '\x9' : '\1'}) + little(first, 2) + little(entries, 2) +
+           little(entry_bits, 1) + little(0, 4) + little(2, 2) + little(2, 2) + little(index_bits, 2) +
+           colours.substr(0, std::size_t{3} * entries) + pixels;
+}
+
+/// OpenImageIO would take what lies in memory beyond the palette, and so show it to viewers.
+TEST(ImageIo, OfAPaletteNothingIsShownThatItDoesNotHave) {
+    using namespace std::string_literals;
+    std::string const plain = "\0\1\2\2"s, wide = "\0\0\1\0\2\0\2\0"s;
+    std::string const packed = "\1\0\1\x85\2"s, packed_wide = "\1\0\0\1\0\x85\2\0"s; // a run leaves the picture
+    for (std::string const& bytes :
+         {tga_with_palette(0, 3, 8, plain), tga_with_palette(0, 3, 16, wide), tga_with_palette(0, 3, 8, packed, true),
+          tga_with_palette(0, 3, 16, packed_wide, true)}) {
+        Picture const picture = read_picture(std::as_bytes(std::span(bytes)), "a.tga");
+        std::string const colours(picture.rgba.begin(), picture.rgba.end());
+        EXPECT_EQ(colours, "ihg\377ihg\377cba\377fed\377");
+    }
+    for (std::string const& bytes :
+         {tga_with_palette(1, 3, 8, plain), tga_with_palette(0xf000, 3, 8, plain), tga_with_palette(0, 2, 8, plain),
+          tga_with_palette(0, 0, 8, plain), tga_with_palette(0, 2, 16, wide),
+          tga_with_palette(0, 3, 16, "\0\0\0\1\0\0\0\0"s), tga_with_palette(0, 3, 24, wide + plain),
+          tga_with_palette(0, 2, 8, packed, true), tga_with_palette(0, 2, 16, packed_wide, true),
+          tga_with_palette(0, 3, 8, "\1\0\3\x81\2"s, true), tga_with_palette(0, 9, 8, plain, false, 8)}) {
+        EXPECT_NE(failure_of(bytes, "a.tga").find("palette"), std::string::npos) << testing::PrintToString(bytes);
+    }
+}
+
 } // namespace
 } // namespace framelet

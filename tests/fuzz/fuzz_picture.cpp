@@ -1,11 +1,13 @@
 // Reads picture files, as a texture from memory and from a file, which EXR and HDR cannot be, and HDR as a sky. EXR as
 // a sky is left out: OpenEXR takes memory for whatever an attribute in the header promises, and the sanitizer ends a
-// program that is refused memory. Input: what is in the file.
+// program that is refused memory. Input: what is in the file. What it reads must not depend on what fresh memory holds.
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <sanitizer/allocator_interface.h>
 #include <tbb/global_control.h>
 
 #include "common/error.h"
@@ -19,6 +21,16 @@ namespace {
 using namespace framelet;
 
 constexpr std::uint64_t memory_bytes = 8 << 20;
+
+/// What fresh memory is full of. Libraries are not instrumented: what they read of it, or beyond what is theirs, shows.
+std::uint8_t fresh = 0;
+
+void fill_fresh(void const volatile* memory, std::size_t bytes) {
+    constexpr std::size_t most = 1 << 16; // larger blocks calloc takes for empty
+    if (bytes <= most) {
+        std::memset(const_cast<void*>(memory), fresh, bytes);
+    }
+}
 
 /// The picture; null where the file is none, or is too large.
 std::shared_ptr<Picture const> read_texture(EncodedImage const& image) {
@@ -54,9 +66,13 @@ void read_sky(std::filesystem::path const& file) {
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     static tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, 1);
+    static bool const fills = __sanitizer_install_malloc_and_free_hooks(fill_fresh, [](void const volatile*) {}) != 0;
+    FRAMELET_CHECK(fills);
     std::span<std::byte const> const bytes = std::as_bytes(std::span(data, size));
     InputFile const file(data, size, ".picture");
+    fresh = 0x2e;
     auto const from_memory = read_texture({"picture", bytes, {}});
+    fresh = 0xd1;
     auto const from_file = read_texture({"picture", {}, file.path()});
     // Of the file the bytes count as well: it may be the one that is too large.
     FRAMELET_CHECK(!from_file || (from_memory && *from_file == *from_memory));

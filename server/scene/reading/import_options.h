@@ -20,9 +20,8 @@ struct ImportOptions {
     /// Animation clips, by name, that the scene must have. A glTF file that is read alone is refused without them
     /// before its meshes and pictures are read; for all else `clips_named` does that.
     std::vector<std::string> clips;
-    /// Program, framelet-server itself, that tries a file of Assimp's formats before this process reads it. Empty:
-    /// there is none, and while Assimp reads, this process as a whole gets no more memory than what is left of
-    /// `memory_bytes`.
+    /// Program, framelet-server itself, that tries a file before this process reads it. Empty: there is none, and while
+    /// Assimp reads, this process as a whole gets no more memory than what is left of `memory_bytes`.
     std::filesystem::path checker;
 };
 

@@ -1,4 +1,4 @@
-#include "server/scene/assimp/import_check.h"
+#include "server/scene/reading/import_check.h"
 
 #include <algorithm>
 #include <array>
