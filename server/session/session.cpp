@@ -80,28 +80,39 @@ bool Session::can_be_resumed(std::uint64_t last_batch) const {
 void Session::resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch) {
     std::scoped_lock const lock(mutex_, earlier->mutex_);
     evicted_ = earlier->evicted_;
+    waiting_evicted_ = earlier->waiting_evicted_;
     last_batch_ = last_ack_ = last_batch;
-    earlier_ = std::move(earlier);
+    if (!earlier->earlier_) {
+        earlier_ = std::move(earlier);
+        return;
+    }
+    // Whoever comes back again and again before its turn makes no chain of sessions.
+    waiting_events_ = std::move(earlier->waiting_events_);
+    earlier_ = std::move(earlier->earlier_);
+    earlier->parked_ = false;
 }
 
-void Session::take_over() {
+bool Session::take_over(Session& earlier) {
     std::deque<std::shared_ptr<Message const>> lacked;
+    std::shared_ptr<Session> taken; // goes once nothing is locked
     {
-        std::shared_ptr<Session> const earlier = this->earlier();
-        std::scoped_lock const lock(mutex_, earlier->mutex_);
-        std::vector<StreamEvent> events = std::move(earlier->waiting_events_);
+        std::scoped_lock const lock(mutex_, earlier.mutex_);
+        if (earlier_.get() != &earlier || !earlier.parked_) {
+            return false;
+        }
+        std::vector<StreamEvent> events = std::move(earlier.waiting_events_);
         events.push_back({seconds_of(std::chrono::steady_clock::now()), Resumed{last_batch_}});
         events.insert(events.end(), waiting_events_.begin(), waiting_events_.end());
         waiting_events_ = std::move(events);
-        waiting_evicted_ += earlier->waiting_evicted_;
-        lacked = std::move(earlier->kept_);
+        lacked = std::move(earlier.kept_);
         std::erase_if(lacked, [this](auto const& message) { return batch_of(message).number <= last_batch_; });
-        earlier->parked_ = false;
-        earlier_.reset();
+        earlier.parked_ = false;
+        taken = std::move(earlier_);
     }
     for (auto const& message : lacked) {
         send_batch(message);
     }
+    return true;
 }
 
 void Session::abandon() {

@@ -55,8 +55,8 @@ public:
     void cut();
     /// True where it is parked, and a viewer that has all batches up to `last_batch` could go on with it.
     bool can_be_resumed(std::uint64_t last_batch) const;
-    /// Lets the session go on with what `earlier`, which is parked, was doing, once the loop calls `take_over`. To be
-    /// called before its Welcome.
+    /// Lets the session go on with what `earlier`, which is parked, was doing, once the loop calls `take_over`. Where
+    /// that had not taken over what it was to resume, this one is to do so instead. To be called before its Welcome.
     void resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch);
     /// Ends being parked: the viewer does not come back, or the session has ended and leaves nothing to go on with.
     void abandon();
@@ -77,11 +77,12 @@ public:
     /// False where it has something to take over and no camera has come yet: what is sent now might come before its
     /// Welcome.
     bool is_ready() const;
-    /// The session that it has to `take_over`; null: none.
+    /// The session that it has to `take_over`, which has none itself; null: none.
     std::shared_ptr<Session> earlier() const;
     /// Takes over what has come to `earlier` and was not taken, and sends once more what the viewer lacks. To be called
-    /// from the loop's thread, when nothing more is made for that session.
-    void take_over();
+    /// from the loop's thread, when nothing more is made for that session. False where there is nothing to take over
+    /// any more: that session has been given up, or another one goes on with it.
+    bool take_over(Session& earlier);
     /// True where its stream is stuck.
     bool is_stuck() const { return stream_->is_stuck(); }
     /// Codings that the viewer can read, as its Hello said.
@@ -123,12 +124,12 @@ private:
     bool open_ = false; ///< handshake done, not ended
     bool ended_ = false;
     bool parked_ = false; ///< ended by a cut, and may be gone on with
-    std::shared_ptr<Session> earlier_; ///< the session to be taken over
+    std::shared_ptr<Session> earlier_; ///< the session to be taken over; it has none itself
     std::uint32_t codings_ = coding::exact_colour;
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
     Viewport viewport_; ///< of the newest camera
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces
-    std::size_t waiting_evicted_ = 0; ///< messages and framelets of `Evicted` among these
+    std::size_t waiting_evicted_ = 0; ///< messages and framelets of `Evicted` among these and those of `earlier_`
     std::uint64_t evicted_ = 0; ///< `Evicted` messages that have come, in sessions before this one too
     std::uint64_t version_ = 0; ///< of what the viewer asks for, as `take_events` returns it
     std::uint64_t last_batch_ = 0; ///< newest batch that was sent; 0: none

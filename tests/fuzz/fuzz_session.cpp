@@ -32,6 +32,10 @@ using std::chrono::steady_clock;
 constexpr Viewport largest{160, 120};
 constexpr std::size_t places = 2;
 constexpr std::size_t most_turns = 64;
+/// Connections over which what is repeated is said.
+constexpr std::size_t repeats = 256;
+/// Most messages and framelets of Evicted that may wait for a viewer's turn.
+constexpr std::size_t most_evicted = std::size_t{1} << 18;
 constexpr double turn_seconds = 0.01;
 
 struct Served {
@@ -66,7 +70,19 @@ public:
         auto const stream = std::make_shared<EncodingStream>();
         auto const session = std::make_shared<Session>(speaker_, stream, events_of(speaker_));
         connections_[speaker_] = {stream, session};
+        said_.clear();
         session->start();
+    }
+
+    /// Says what has been said over this connection over many others, before there is a turn.
+    void repeat() {
+        std::vector<ByteView> const said = said_;
+        for (std::size_t times = 0; times < repeats && !said.empty(); ++times) {
+            connect();
+            for (ByteView const body : said) {
+                say(body);
+            }
+        }
     }
 
     void cut() { lose("the connection was cut", true); }
@@ -76,6 +92,7 @@ public:
         if (speaker == connections_.end()) {
             return;
         }
+        said_.push_back(body);
         std::optional<Message> message;
         try {
             message = decode_message(body);
@@ -214,24 +231,33 @@ private:
         Viewer& viewer = viewers_[session->id()];
         if (!viewer.stream) {
             viewer.session = session;
-            viewer.stream = session->earlier() ? take_up(*session)
-                                               : std::make_unique<FrameletStream>(StreamOptions{}, session->codings());
+            auto const earlier = session->earlier();
+            viewer.stream = earlier ? take_up(*session, *earlier) : new_stream(*session);
         }
         return *viewer.stream;
     }
 
-    /// Takes the stream of the session with which this one goes on, and which may have done so itself without a turn.
-    std::unique_ptr<FrameletStream> take_up(Session& session) {
-        std::shared_ptr<Session> const earlier = session.earlier();
-        FRAMELET_CHECK(earlier->is_parked());
-        stream_of(earlier);
-        auto node = viewers_.extract(earlier->id());
-        session.take_over();
-        return std::move(node.mapped().stream);
+    static std::unique_ptr<FrameletStream> new_stream(Session const& session) {
+        return std::make_unique<FrameletStream>(StreamOptions{}, session.codings());
+    }
+
+    /// Takes the stream of the session with which this one goes on, and which has nothing to go on with itself.
+    std::unique_ptr<FrameletStream> take_up(Session& session, Session& earlier) {
+        FRAMELET_CHECK(!earlier.earlier());
+        bool const is_taken = session.take_over(earlier);
+        FRAMELET_CHECK(is_taken);
+        auto node = viewers_.extract(earlier.id());
+        return node.empty() ? new_stream(earlier) : std::move(node.mapped().stream);
     }
 
     void take_turn(Session& session, FrameletStream& stream) {
         session.take_events(events_);
+        std::size_t evicted = 0;
+        for (StreamEvent const& event : events_) {
+            auto const* const gone = std::get_if<Evicted>(&event.what);
+            evicted += gone != nullptr ? gone->framelets.size() + 1 : 0;
+        }
+        FRAMELET_CHECK(evicted <= most_evicted);
         for (StreamEvent& event : events_) {
             event.seconds = now_;
             stream.take(event);
@@ -259,6 +285,7 @@ private:
     SceneClock clock_{true, WallTime{}};
     double now_ = 0;
     std::uint64_t next_id_ = 1, speaker_ = 0;
+    std::vector<ByteView> said_; ///< by the speaker
     std::map<std::uint64_t, Connection> connections_;
     std::set<std::uint64_t> ended_; ///< all that have told so
     std::vector<Ticket> tickets_; ///< of all welcomes
@@ -296,6 +323,9 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
         }
         if ((head & session_input::connects) != 0) {
             server.connect();
+        }
+        if ((head & session_input::is_repeated) != 0) {
+            server.repeat();
         }
         if (!body.empty()) {
             server.say(body);

@@ -120,6 +120,29 @@ void write_sequence(std::filesystem::path const& folder, Batch batch, std::strin
     write(folder / "viewer" / name, bodies);
 }
 
+/// Writes a picture, and behind it batches without framelets that are not to be shown for long, with long tracks.
+void write_waiting(std::filesystem::path const& folder) {
+    Batch batch = make_batch(20, 1);
+    add_shapes(batch);
+    std::vector<std::uint8_t> bodies;
+    BatchCodec codec;
+    BatchMemory memory;
+    for (int i = 0; i < 30; ++i) {
+        std::vector<std::uint8_t> body;
+        append(body, encode_message(codec.encode(batch, &memory)));
+        bodies.push_back(static_cast<std::uint8_t>(body.size()));
+        bodies.push_back(static_cast<std::uint8_t>(body.size() >> 8));
+        bodies.insert(bodies.end(), body.begin(), body.end());
+        ++batch.number;
+        batch.shown_from = 1e6;
+        batch.framelets.clear();
+        batch.qp.clear();
+        batch.shapes.clear();
+        batch.tracks.assign(1, {1, 0, std::vector<BodyPose>(max_batch_keys / 4)});
+    }
+    write(folder / "viewer" / "waiting", bodies);
+}
+
 void write_planes(std::filesystem::path const& folder, Batch const& batch, ReferencePicture const* held) {
     PlaneCodec codec;
     PlaneModel model;
@@ -222,6 +245,14 @@ void write_pictures(std::filesystem::path const& folder) {
                                     std::string("\x2f\0\0\0\x10\7\x10\x11\x11\x88\x88\xfe\7\0", 14)));
     write(folder / "tga", bytes_of(std::string("\0\0\2", 3) + std::string(9, '\0') + number(2, 2) + number(2, 2) +
                                    number(24, 2) + texels));
+    std::string const palette_sides = number(0) + number(2, 2) + number(2, 2);
+    write(folder / "tga_palette", bytes_of(std::string("\0\1\1\0\0\4\0\x18", 8) + palette_sides + number(8, 2) +
+                                           texels + std::string("\0\1\2\3", 4)));
+    write(folder / "tga_packed", bytes_of(std::string("\0\1\x9\0\0\4\0\x18", 8) + palette_sides + number(16, 2) +
+                                          texels + std::string("\1\0\0\1\0\x81\2\0", 8)));
+    write(folder / "bmp_palette", bytes_of("BM" + number(78) + number(0) + number(70) + number(40) + number(2) +
+                                           number(2) + number(1, 2) + number(8, 2) + std::string(16, '\0') + number(4) +
+                                           number(4) + texels + "mnop" + std::string("\0\1\0\0\2\3\0\0", 8)));
     write(folder / "bmp", bytes_of("BM" + number(70) + number(0) + number(54) + number(40) + number(2) + number(2) +
                                    number(1, 2) + number(24, 2) + std::string(24, '\0') + texels + "    "));
     write(folder / "hdr", bytes_of("#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 2 +X 2\n" + texels + "mnop"));
@@ -293,6 +324,9 @@ void write_returns(std::filesystem::path const& folder) {
                   {hello(control_token), camera_update(1), {connects, hello(control_token, 1, 1)}, camera_update(2)});
     write_session(folder, "cut_twice", 0,
                   {plain, camera_update(1), {anew, hello("", 1, 1)}, {anew, hello("", 1, 1)}, camera_update(1)});
+    Evicted const many{std::vector<SentTile>(1200, {1, Tile{5}})};
+    write_session(folder, "comes_often", 0,
+                  {plain, camera_update(1), {anew, hello("", 1, 1)}, many, {is_repeated, camera_update(1)}});
     write_session(folder, "fits_not", 0, {plain, camera_update(1), {anew, other_codings}, camera_update(1)});
     write_session(folder, "guesses", asks_for_token,
                   {hello("a guess"),
@@ -354,6 +388,7 @@ int main(int argc, char** argv) {
             write_shapes(folder, batch.shapes);
         }
     }
+    write_waiting(folder);
     write_files(folder);
     write_pictures(folder / "picture");
     write_sessions(folder);

@@ -11,7 +11,8 @@ namespace framelet::session_input {
 inline constexpr unsigned asks_for_token = 1, has_control_token = 2, shares_control = 4;
 
 /// Bits of the two bytes in front of a message.
-inline constexpr unsigned length_bits = 0x3fff;
+inline constexpr unsigned length_bits = 0x1fff;
+inline constexpr unsigned is_repeated = 0x2000; ///< what was said over the connection is said over many more, at once
 inline constexpr unsigned is_cut = 0x4000; ///< the connection is cut
 inline constexpr unsigned connects = 0x8000; ///< another one is opened, over which all that follows is said
 

@@ -160,6 +160,24 @@ TEST_P(Resume, WhoHasAllIsSentNothing) {
     EXPECT_GT(viewer.framelets, framelets);
 }
 
+TEST_P(Resume, ManyReturnsBeforeATurnAreAsOne) {
+    RunningServer const server(still(), chase());
+    Returning viewer(server.port());
+    viewer.look(1);
+    ASSERT_TRUE(viewer.watch());
+    std::uint64_t const framelets = viewer.framelets;
+    for (int times = 0; times < 100; ++times) {
+        ASSERT_TRUE(viewer.connect());
+        ASSERT_TRUE(viewer.is_resumed) << times;
+    }
+    viewer.look(1);
+    ASSERT_TRUE(viewer.watch());
+    EXPECT_EQ(viewer.framelets, framelets);
+    viewer.look(2);
+    ASSERT_TRUE(viewer.watch());
+    EXPECT_GT(viewer.framelets, framelets);
+}
+
 TEST_P(Resume, WhatIsLackedComesOnceMoreAsItWas) {
     ServerOptions options = still();
     options.loop.stream.batch_framelets = 16;

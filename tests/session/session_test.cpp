@@ -10,8 +10,9 @@
 namespace framelet {
 namespace {
 
+constexpr std::size_t most_waiting = std::size_t{1} << 18; ///< messages and framelets that a viewer has evicted
+
 TEST(Session, AFloodOfWhatAViewerEvictsIsBounded) {
-    constexpr std::size_t most_waiting = std::size_t{1} << 18;
     FakeConnection const stream;
     Session::Events events;
     events.admit = [](Hello const&) { return Welcome{}; };
@@ -136,8 +137,9 @@ TEST(Session, TakesOverThroughSeveralCuts) {
     EXPECT_TRUE(third.session->is_ready());
     EXPECT_EQ(third.session->status().evicted, 2u);
     EXPECT_EQ(third.session->status().last_batch, 1u);
-    second.session->take_over();
-    third.session->take_over();
+    EXPECT_FALSE(second.session->take_over(*first.session)) << "the third does";
+    ASSERT_TRUE(third.session->take_over(*first.session));
+    EXPECT_FALSE(third.session->take_over(*first.session)) << "once";
     EXPECT_EQ(third.session->status().last_batch, 3u) << "the two others are sent";
     EXPECT_FALSE(first.session->is_parked() || second.session->is_parked());
     std::vector<StreamEvent> events;
@@ -148,7 +150,58 @@ TEST(Session, TakesOverThroughSeveralCuts) {
     }
     auto const kind = [](auto const& what) { return StreamEvent{0, what}.what.index(); };
     std::size_t const sent = kind(BatchSent{}), gone = kind(Evicted{}), resumed = kind(Resumed{});
-    EXPECT_EQ(kinds, (std::vector{sent, sent, sent, gone, resumed, gone, resumed, kind(CameraUpdate{}), sent, sent}));
+    EXPECT_EQ(kinds, (std::vector{sent, sent, sent, gone, resumed, gone, kind(CameraUpdate{}), sent, sent}));
+}
+
+TEST(Session, WhoeverComesBackAgainAndAgainBeforeItsTurnLeavesOneSessionAndItsBounds) {
+    Viewed first;
+    first.session->start();
+    first.stream->bring(Hello{});
+    auto const evict_as_much_as_is_heard = [](Viewed& viewer) {
+        Evicted const full{std::vector<SentTile>(max_evicted, {1, Tile{5}})};
+        for (std::size_t i = 0; i < most_waiting / max_evicted; ++i) {
+            viewer.stream->bring(full);
+        }
+    };
+    evict_as_much_as_is_heard(first);
+    first.session->cut();
+    std::vector<std::unique_ptr<Viewed>> returns;
+    for (Session* last = first.session.get(); returns.size() < 5; last = returns.back()->session.get()) {
+        ASSERT_TRUE(last->can_be_resumed(0));
+        Viewed& next = *returns.emplace_back(std::make_unique<Viewed>());
+        next.session->start();
+        next.session->resume(last->shared_from_this(), 0);
+        next.stream->bring(Hello{});
+        EXPECT_EQ(next.session->earlier().get(), first.session.get());
+        EXPECT_FALSE(last != first.session.get() && (last->earlier() || last->is_parked())) << "nothing is left of it";
+        evict_as_much_as_is_heard(next);
+        next.session->cut();
+    }
+    Session& last = *returns.back()->session;
+    EXPECT_EQ(last.status().evicted, 6 * (most_waiting / max_evicted));
+    ASSERT_TRUE(last.take_over(*first.session));
+    std::vector<StreamEvent> came;
+    last.take_events(came);
+    std::size_t framelets = 0;
+    for (StreamEvent const& event : came) {
+        auto const* const gone = std::get_if<Evicted>(&event.what);
+        framelets += gone != nullptr ? gone->framelets.size() : 0;
+    }
+    EXPECT_GT(framelets, most_waiting / 2);
+    EXPECT_LE(framelets, most_waiting);
+}
+
+TEST(Session, WhatHasBeenGivenUpIsNotTakenOver) {
+    Viewed first, second;
+    for (Viewed* const viewer : {&first, &second}) {
+        viewer->session->start();
+    }
+    first.stream->bring(Hello{});
+    first.session->cut();
+    second.session->resume(first.session, 0);
+    second.session->abandon(); // by the server's other thread, while the loop is about to take over
+    EXPECT_FALSE(first.session->is_parked());
+    EXPECT_FALSE(second.session->take_over(*first.session));
 }
 
 } // namespace

@@ -171,7 +171,8 @@ std::size_t SessionLoop::sharers(Viewer const& served) const {
 SessionLoop::Viewer& SessionLoop::viewer_of(std::shared_ptr<Session> const& session) {
     auto found = viewers_.find(session->id());
     if (found == viewers_.end()) {
-        auto viewer = session->earlier() ? take_up(*session) : new_viewer(session);
+        std::shared_ptr<Session> const earlier = session->earlier();
+        auto viewer = earlier ? take_up(*session, earlier) : new_viewer(session);
         viewer->session = session;
         found = viewers_.emplace(session->id(), std::move(viewer)).first;
     }
@@ -191,24 +192,18 @@ std::unique_ptr<SessionLoop::Viewer> SessionLoop::new_viewer(std::shared_ptr<Ses
     return viewer;
 }
 
-/// Takes what is known of the viewer from the session that this one resumes. There may be several sessions that each
-/// resumed the one before without having had a turn.
-std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session) {
-    std::shared_ptr<Session> const earlier = session.earlier();
+/// Takes what is known of the viewer from the session that this one resumes.
+std::unique_ptr<SessionLoop::Viewer> SessionLoop::take_up(Session& session, std::shared_ptr<Session> const& earlier) {
     finish_rendered(); // it may be of that one
-    if (!earlier->is_parked()) {
+    if (!session.take_over(*earlier)) {
         throw std::runtime_error("there was no memory left for it while the viewer was away");
     }
-    std::unique_ptr<Viewer> viewer;
-    if (earlier->earlier()) {
-        viewer = take_up(*earlier);
-    } else if (auto const found = viewers_.find(earlier->id()); found != viewers_.end()) {
-        viewer = std::move(found->second);
-        viewers_.erase(found);
-    } else {
-        viewer = new_viewer(earlier);
+    auto const found = viewers_.find(earlier->id());
+    if (found == viewers_.end()) {
+        return new_viewer(earlier);
     }
-    session.take_over();
+    std::unique_ptr<Viewer> viewer = std::move(found->second);
+    viewers_.erase(found);
     return viewer;
 }
 

@@ -75,7 +75,7 @@ private:
     std::size_t sharers(Viewer const& served) const;
     Viewer& viewer_of(std::shared_ptr<Session> const& session);
     std::unique_ptr<Viewer> new_viewer(std::shared_ptr<Session> const& session) const;
-    std::unique_ptr<Viewer> take_up(Session& session);
+    std::unique_ptr<Viewer> take_up(Session& session, std::shared_ptr<Session> const& earlier);
     void note_rate(TurnFigures const& figures, double seconds);
     void start_finishing();
     void finish_one(bool learns);
