@@ -42,6 +42,8 @@ namespace {
 constexpr std::chrono::seconds heartbeat{1};
 /// Longest time without a heartbeat when all is well: a scene that is replaced holds it up for a moment.
 constexpr std::chrono::seconds healthy_pause{10};
+/// How long after a viewer has left the others are told, of all that leave meanwhile at once.
+constexpr std::chrono::milliseconds leaving_told_after{100};
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 
@@ -56,7 +58,7 @@ bool is_loopback(std::string const& bind) {
 struct Server::Impl {
     std::unique_ptr<Listener> const listener;
     asio::io_context& io = listener->io;
-    asio::steady_timer timer{io}, clock_timer{io};
+    asio::steady_timer timer{io}, clock_timer{io}, leaving_timer{io};
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
@@ -72,6 +74,7 @@ struct Server::Impl {
     ConnectionTable connections; ///< its open sessions may be asked for on any thread
     std::uint64_t next_id = 1;
     bool beats = false; ///< the next heartbeat is on its way
+    bool tells_of_leaving = false; ///< a status that says who has left is on its way
     bool ends = false; ///< the server ends: no heartbeat follows
 
     std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
@@ -264,10 +267,28 @@ struct Server::Impl {
         }
         log_end(id, *found, reason);
         auto const stream = found->stream;
+        bool const was_viewer = found->admitted;
         forget(id);
         admission.keep_parked(options.max_sessions);
         farewells.add(stream);
-        send_status(); // it may be another's turn to control
+        if (was_viewer) {
+            tell_of_leaving();
+        }
+    }
+
+    /// Has the status sent, since it may be another's turn to control; not for each that leaves, who may be many.
+    void tell_of_leaving() {
+        if (tells_of_leaving) {
+            return;
+        }
+        leaving_timer.expires_after(leaving_told_after);
+        leaving_timer.async_wait([this](boost::system::error_code error) {
+            tells_of_leaving = false;
+            if (!error) {
+                send_status();
+            }
+        });
+        tells_of_leaving = true;
     }
 
     /// Forgets a connection. Needs no memory to do so.
@@ -397,6 +418,7 @@ struct Server::Impl {
         listener->close();
         timer.cancel();
         clock_timer.cancel();
+        leaving_timer.cancel();
         signals.cancel(ignored);
         for (auto const& [id, connection] : connections.all()) {
             connection.session->close("the server shuts down", true);

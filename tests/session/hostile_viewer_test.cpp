@@ -118,5 +118,40 @@ TEST_P(HostileViewer, FloodsTheClock) {
     flood.join();
 }
 
+/// How often a viewer is told the Status while this is done, as a share of what it may be in the time that this takes.
+double share_told_during(std::function<void(std::uint16_t port)> const& work) {
+    ServerOptions options;
+    options.paused = true;
+    RunningServer const server(options, moving_scene());
+    RawViewer bystander(server.port());
+    auto const start = std::chrono::steady_clock::now();
+    work(server.port());
+    bystander.send(ClockRequest{ClockRequest::time, {7, false, 1}});
+    double told = 0;
+    EXPECT_TRUE(bystander.watch([&](Message const& message) {
+        auto const* const status = std::get_if<Status>(&message);
+        told += status != nullptr ? 1 : 0;
+        return status != nullptr && status->clock.time == 7;
+    }));
+    std::chrono::duration<double> const elapsed = std::chrono::steady_clock::now() - start;
+    return told / (3 + 11 * elapsed.count()); // the clock's, one a second of the heartbeat, and ten
+}
+
+TEST(ManyWhoComeAndGo, TakeNoOthersLink) {
+    constexpr std::size_t many = 300;
+    double const strangers = share_told_during([](std::uint16_t port) {
+        for (std::size_t i = 0; i < many; ++i) {
+            EXPECT_NE(RawViewer(port, Hello{protocol_version + 1, {}, coding::all}).failure(), "");
+        }
+    });
+    EXPECT_LE(strangers, 1);
+    double const viewers = share_told_during([](std::uint16_t port) {
+        for (std::size_t i = 0; i < many; ++i) {
+            EXPECT_TRUE(RawViewer(port).receive());
+        }
+    });
+    EXPECT_LE(viewers, 1);
+}
+
 } // namespace
 } // namespace framelet
