@@ -6,6 +6,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
+#include "common/framelet/waiting_batch.h"
 #include "common/held/block_flags.h"
 
 namespace framelet {
@@ -56,8 +57,7 @@ void SceneSmoother::insert(Batch const& batch, BodyMotions const& motions) {
         return;
     }
     waiting_framelets_ += batch.framelets.size();
-    waiting_.push_back(batch);
-    waiting_.back().tracks.clear();
+    waiting_.push_back(without_tracks(batch));
     while (waiting_framelets_ > most_waiting(viewport_)) {
         waiting_framelets_ -= waiting_.front().framelets.size();
         older_pool_.insert(waiting_.front(), motions);

@@ -1,6 +1,7 @@
 #include "client/core/picture/session_pictures.h"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 
 #include "tests/picture/fake_canvas.h"
 #include "tests/picture/synthetic_framelets.h"
@@ -23,6 +24,7 @@ Batch left_of(int column, std::uint8_t value) {
 
 struct Shown {
     SessionPictures pictures;
+    PictureSettings settings;
     NumberedView view{1, {}, plane.viewport(), 1};
     PictureRequest request;
     Picture picture;
@@ -32,7 +34,7 @@ struct Shown {
 
     void insert(Batch batch) {
         batch.number = ++batches;
-        pictures.prepare(view, {}).insert(batch);
+        pictures.prepare(view, settings).insert(batch);
     }
     /// Begins another session after one of which this was shown.
     void begin_after(Batch const& batch) {
@@ -45,7 +47,7 @@ struct Shown {
         pictures.begin_anew();
     }
     int at(int x) {
-        pictures.prepare(view, {});
+        pictures.prepare(view, settings);
         pictures.show(request, picture, changed);
         return picture.row(30)[4 * x];
     }
@@ -124,6 +126,45 @@ TEST(PictureMaker, AServerThatMakesItWaitForEverDoesNotFillIt) {
     }
     EXPECT_LT(most, std::size_t{1} << 20);
     EXPECT_EQ(at_time(shown, 1), 80) << "rather too early";
+}
+
+TEST(PictureMaker, BatchesWithoutFrameletsThatWaitAreCounted) {
+    Shown shown;
+    shown.insert(left_of(100, 50));
+    EXPECT_EQ(at_time(shown, 1), 50);
+    shown.insert(waiting_until(1e9));
+    Batch empty = waiting_until(1e9);
+    empty.framelets.clear();
+    for (int i = 0; i < 100; ++i) {
+        shown.insert(empty);
+    }
+    EXPECT_EQ(at_time(shown, 1), 50);
+    for (int i = 0; i < 100'000; ++i) {
+        shown.insert(empty);
+    }
+    EXPECT_EQ(at_time(shown, 1), 80) << "rather too early than without end";
+}
+
+TEST(PictureMaker, NoTracksWait) {
+    for (double const lag : {0.0, 0.1}) {
+        Shown shown;
+        shown.settings.lag_seconds = lag;
+        shown.insert(left_of(100, 50));
+        shown.request.now = 1;
+        EXPECT_EQ(at_time(shown, 1), 50);
+        Batch later = waiting_until(lag > 0 ? 0 : 1e9);
+        later.scene_time = 1e6;
+        later.framelets.resize(1);
+        later.tracks.push_back({1, 0, std::vector<BodyPose>(20'000)});
+        later.camera_track = later.tracks[0];
+        auto const taken = [] { return ::mallinfo2().uordblks + ::mallinfo2().hblkhd; };
+        shown.insert(later);
+        std::size_t const before = taken();
+        for (int i = 0; i < 50; ++i) {
+            shown.insert(later);
+        }
+        EXPECT_LT(taken(), before + later.tracks[0].keys.size() * sizeof(BodyPose)) << lag;
+    }
 }
 
 TEST(SessionPictures, TheEarlierIsShownUntilTheNewHasNoMoreHoles) {

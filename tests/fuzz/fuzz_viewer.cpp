@@ -1,17 +1,33 @@
 // Does what a viewer does with the messages of a server, one after the other: batches into the memory that later ones
-// are decoded with, and into the cache. Input: bodies of messages, each with its length, two bytes, in front.
+// are decoded with, into the cache, and into what pictures are made of. From the first one on a picture is shown, so
+// that batches may wait. Input: bodies of messages, each with its length, two bytes, in front.
 #include <algorithm>
 
+#include <sanitizer/allocator_interface.h>
+
+#include "client/core/picture/picture_maker.h"
 #include "common/error.h"
 #include "common/held/framelet_cache.h"
 #include "protocol/codec/batch_codec.h"
 #include "protocol/messages/message_codec.h"
 
+namespace {
+
+/// What a viewer with so small a picture may take, bytes, besides what it has for all its life.
+constexpr std::size_t most_held = 24 << 20;
+
+} // namespace
+
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;
     static BatchCodec codec;
-    FrameletCache cache{ImagePlane(Viewport{256, 256})};
+    Viewport const viewport{256, 256};
+    FrameletCache cache{ImagePlane(viewport)};
+    PictureMaker maker(viewport, {});
+    Picture picture;
+    std::vector<PixelRect> changed;
     BatchMemory memory;
+    std::size_t const at_first = __sanitizer_get_current_allocated_bytes();
     try {
         while (size >= 2) {
             std::size_t const length = std::min(data[0] | std::size_t{data[1]} << 8, size - 2);
@@ -20,13 +36,18 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
             size -= 2 + length;
             auto const* const encoded = std::get_if<EncodedBatch>(&message);
             // Another viewport is decoded all the same; the seeds' own is enough here, and small.
-            if (encoded == nullptr || (encoded->moment && encoded->moment->view.viewport != cache.plane().viewport())) {
+            if (encoded == nullptr || (encoded->moment && encoded->moment->view.viewport != viewport)) {
                 continue;
             }
             Batch const batch = codec.decode(*encoded, &memory);
             FRAMELET_CHECK(cache.insert(batch) <= batch.framelets.size());
+            maker.insert(batch);
+            if (picture.rgba.empty()) {
+                maker.show({batch.view.camera, 1, -1, batch.scene_time, 1, 0, false}, picture, changed);
+            }
         }
     } catch (ProtocolError const&) {
     }
+    FRAMELET_CHECK(__sanitizer_get_current_allocated_bytes() < at_first + most_held);
     return 0;
 }

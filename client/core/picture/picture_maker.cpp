@@ -7,6 +7,7 @@
 #include "client/core/drawn_over/confidence_colors.h"
 #include "client/core/drawn_over/framelet_outlines.h"
 #include "client/core/drawn_over/holes.h"
+#include "common/framelet/waiting_batch.h"
 #include "common/picture/reconstruction.h"
 #include "common/picture/shown_point.h"
 
@@ -59,11 +60,11 @@ void PictureMaker::insert(Batch const& batch) {
         take(batch);
         return;
     }
-    waiting_.push_back(batch);
-    waiting_framelets_ += batch.framelets.size();
+    waiting_bytes_ += bytes_of(waiting_.emplace_back(without_tracks(batch)));
     constexpr std::size_t most_samples = 24; // samples a pixel: a moment has no more in all its levels together
+    constexpr std::size_t framelet_bytes = sizeof(DisplayFramelet) + sizeof(FrameletShape);
     auto const pixels = static_cast<std::size_t>(viewport().width) * static_cast<std::size_t>(viewport().height);
-    if (waiting_framelets_ * framelet_samples > most_samples * pixels) {
+    if (waiting_bytes_ > most_samples * pixels / framelet_samples * framelet_bytes) {
         take_waiting(waiting_.size());
     }
 }
@@ -72,7 +73,7 @@ void PictureMaker::insert(Batch const& batch) {
 void PictureMaker::take_waiting(std::size_t count) {
     for (std::size_t i = 0; i < count; ++i) {
         take(waiting_[i]);
-        waiting_framelets_ -= waiting_[i].framelets.size();
+        waiting_bytes_ -= bytes_of(waiting_[i]);
     }
     waiting_.erase(waiting_.begin(), waiting_.begin() + static_cast<std::ptrdiff_t>(count));
 }
@@ -237,8 +238,7 @@ double PictureMaker::coverage() const {
 }
 
 std::size_t PictureMaker::memory_bytes() const {
-    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0) +
-           waiting_framelets_ * sizeof(DisplayFramelet);
+    return pool_.memory_bytes() + (smoother_ ? smoother_->memory_bytes() : 0) + waiting_bytes_;
 }
 
 } // namespace framelet

@@ -103,8 +103,9 @@ private:
     PictureSettings settings_;
     FrameletPool pool_;
     BodyMotions motions_;
-    std::vector<Batch> waiting_; ///< batches whose time to be shown has not come, in the order in which they came
-    std::size_t waiting_framelets_ = 0;
+    /// Batches whose time to be shown has not come, in the order in which they came, without their tracks.
+    std::vector<Batch> waiting_;
+    std::size_t waiting_bytes_ = 0; ///< of these
     BodyMotions cameras_; ///< tracks of the scene's cameras, numbered as `camera_body`
     Reprojector reprojector_;
     LateClock late_clock_{0};

@@ -2,22 +2,9 @@
 
 #include <utility>
 
+#include "common/framelet/waiting_batch.h"
+
 namespace framelet {
-namespace {
-
-std::size_t bytes_of(Batch const& batch) {
-    std::size_t bytes = sizeof batch + batch.framelets.size() * sizeof(DisplayFramelet);
-    for (FrameletShape const& shape : batch.shapes) {
-        bytes += sizeof shape + shape.outliers.size() * sizeof shape.outliers[0];
-    }
-    for (BodyTrack const& track : batch.tracks) {
-        bytes += sizeof track + track.keys.size() * sizeof(BodyPose);
-    }
-    return bytes + (batch.camera_track ? batch.camera_track->keys.size() * sizeof(BodyPose) : 0);
-}
-
-} // namespace
-
 void ArrivedBatches::add(Batch batch) {
     bytes_ += bytes_of(batch);
     waiting_.push_back(std::move(batch));
