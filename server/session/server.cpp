@@ -84,24 +84,21 @@ struct Server::Impl {
     std::shared_ptr<LoadedScene> loaded; ///< the scene that the loop looks at; null: it is the caller's
     LoopThread loop; ///< replaced on the io thread only; its figures may be asked for on any thread
 
-    Impl(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& given,
-         std::unique_ptr<Listener> bound)
-        : listener(std::move(bound)), options(given), welcome(make_welcome(scene, clips)),
+    Impl(PosedScene& scene, Welcome told, ServerOptions const& given, std::unique_ptr<Listener> bound)
+        : listener(std::move(bound)), options(given), welcome(std::move(told)),
           clock(!given.paused, steady_clock::now()),
           admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000},
                     [this] { loop.wake(); }),
-          loop(make_loop(scene, std::move(clips), render_scene, given.loop)) {
+          loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
         }
         listener->listen();
     }
 
-    std::unique_ptr<SessionLoop> make_loop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
-                                           LoopOptions const& loop_options) {
+    std::unique_ptr<SessionLoop> make_loop(PosedScene& scene, LoopOptions const& loop_options) {
         SessionLoop::Events events{[this] { return connections.open_sessions(); }, [this] { post_status(); }};
-        return std::make_unique<SessionLoop>(scene, std::move(clips), render_scene, clock, loop_options,
-                                             std::move(events));
+        return std::make_unique<SessionLoop>(scene, clock, loop_options, std::move(events));
     }
 
     void replace_scene(std::shared_ptr<LoadedScene> next) {
@@ -111,8 +108,8 @@ struct Server::Impl {
         // All that may want for memory comes first: then either scene is served as a whole.
         LoopOptions loop_options = options.loop;
         loop_options.stream.exposure = next->exposure;
-        Welcome next_welcome = make_welcome(next->scene, next->clips);
-        auto next_loop = make_loop(next->scene, next->clips, next->render_scene, loop_options);
+        Welcome next_welcome = next->welcome;
+        auto next_loop = make_loop(next->posed, loop_options);
         SessionLoop::Sessions const sessions = connections.open_sessions();
         loop.stop();
         for (auto const& session : sessions) {
@@ -429,19 +426,18 @@ struct Server::Impl {
     }
 };
 
-Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
-               std::unique_ptr<Listener> listener)
-    : impl_(std::make_unique<Impl>(scene, std::move(clips), render_scene, options, std::move(listener))) {}
+Server::Server(PosedScene& scene, ServerOptions const& options, std::unique_ptr<Listener> listener)
+    : impl_(std::make_unique<Impl>(scene, make_welcome(scene.scene(), scene.clips()), options, std::move(listener))) {}
 
 Server::Server(std::unique_ptr<LoadedScene> scene, ServerOptions const& options, std::unique_ptr<Listener> listener) {
     ServerOptions exposed = options;
     exposed.loop.stream.exposure = scene->exposure;
-    impl_ = std::make_unique<Impl>(scene->scene, scene->clips, scene->render_scene, exposed, std::move(listener));
+    impl_ = std::make_unique<Impl>(scene->posed, scene->welcome, exposed, std::move(listener));
     impl_->loaded = std::move(scene);
 }
 
-Server::Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options)
-    : Server(scene, std::move(clips), render_scene, options, std::make_unique<Listener>(options.bind, options.port)) {}
+Server::Server(PosedScene& scene, ServerOptions const& options)
+    : Server(scene, options, std::make_unique<Listener>(options.bind, options.port)) {}
 
 Server::~Server() = default;
 

@@ -8,8 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "server/render/prepared/render_scene.h"
-#include "server/scene/scene.h"
 #include "server/session/figures/server_figures.h"
 #include "server/session/loop/session_loop.h"
 
@@ -35,14 +33,13 @@ struct ServerOptions {
 class Server {
 public:
     /// Listens at what is bound already: viewers can connect from now on (they are answered once `run` runs). Throws
-    /// InputError where the certificate is of no use, or another program listens there meanwhile. `scene` and
-    /// `render_scene` must outlive the server.
-    Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options,
-           std::unique_ptr<Listener> listener);
+    /// InputError where the certificate is of no use, or another program listens there meanwhile. `scene` must
+    /// outlive the server.
+    Server(PosedScene& scene, ServerOptions const& options, std::unique_ptr<Listener> listener);
     /// Serves a scene of its own, with its exposure, which another one can replace.
     Server(std::unique_ptr<LoadedScene> scene, ServerOptions const& options, std::unique_ptr<Listener> listener);
     /// Binds the address by itself. Throws InputError where it cannot be had.
-    Server(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, ServerOptions const& options);
+    Server(PosedScene& scene, ServerOptions const& options);
     ~Server();
 
     /// Addresses that it listens on, with the real port, which is the same for all.

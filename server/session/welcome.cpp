@@ -6,7 +6,7 @@
 
 namespace framelet {
 
-Welcome make_welcome(Scene const& scene, std::vector<Index> const& clips) {
+Welcome make_welcome(Scene const& scene, std::span<Index const> clips) {
     ScenePose const pose = evaluate_pose(scene, clips, 0);
     Welcome welcome;
     welcome.server = "framelet-server " FRAMELET_VERSION;

@@ -2,13 +2,13 @@
 // but for what is the viewer's own: clock, ticket and control.
 #pragma once
 
-#include <vector>
+#include <span>
 
 #include "protocol/messages/message.h"
 #include "server/scene/scene.h"
 
 namespace framelet {
 
-Welcome make_welcome(Scene const& scene, std::vector<Index> const& clips);
+Welcome make_welcome(Scene const& scene, std::span<Index const> clips);
 
 } // namespace framelet

@@ -9,12 +9,9 @@ namespace framelet {
 PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene)
     : scene_(scene), clips_(std::move(clips)), render_scene_(render_scene),
       animated_(animation_duration(scene, clips_) > 0), switches_(find_switches(scene, clips_)),
-      pose_(evaluate_pose(scene, clips_, 0)) {
+      moving_cameras_(framelet::moving_cameras(scene, clips_)), pose_(evaluate_pose(scene, clips_, 0)) {
     render_scene_.set_clips(clips_);
     render_scene_.set_pose(pose_);
-    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
-        moving_cameras_.push_back(framelet::camera_moves(scene_, clips_, static_cast<Index>(i)));
-    }
 }
 
 bool PosedScene::camera_moves(int index) const {

@@ -22,6 +22,8 @@ class PosedScene {
 public:
     /// Poses the scene for time 0. Scene and renderer must outlive it.
     PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene);
+    PosedScene(PosedScene const&) = delete;
+    PosedScene& operator=(PosedScene const&) = delete;
 
     Scene const& scene() const { return scene_; }
     std::span<Index const> clips() const { return clips_; }
@@ -46,7 +48,7 @@ private:
     RenderScene& render_scene_;
     bool const animated_;
     std::vector<ClipSwitches> const switches_;
-    std::vector<bool> moving_cameras_;
+    std::vector<bool> const moving_cameras_;
     ScenePose pose_; ///< evaluated last
     /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
     std::optional<SceneTime> rendered_ = 0;

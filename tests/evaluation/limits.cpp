@@ -115,7 +115,8 @@ nlohmann::json measure_limits(BenchScene& scene, Viewport viewport, int rounds) 
     server_options.port = 0;
     server_options.paused = true;
     server_options.loop.stream.exposure = scene.exposure;
-    Server server(scene.scene, scene.clips, *scene.render_scene, server_options);
+    PosedScene posed(scene.scene, scene.clips, *scene.render_scene);
+    Server server(posed, server_options);
     std::jthread const running([&server] { server.run(); });
 
     std::vector<double> ratios, server_rates, bare_rates;

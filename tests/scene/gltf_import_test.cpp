@@ -55,6 +55,21 @@ TEST(GltfImport, FlatNormalsWhereThereAreNone) {
     }
 }
 
+TEST(GltfImport, OfVeryManyCamerasTheFirstAreTaken) {
+    std::string nodes = R"("nodes":[{"mesh":0})";
+    std::string roots = "0";
+    for (int i = 1; i <= 5000; ++i) {
+        nodes += R"(,{"camera":0})";
+        roots += "," + std::to_string(i);
+    }
+    Scene const scene =
+        import_triangle(R"("cameras":[{"type":"perspective","perspective":{"yfov":0.6,"znear":0.1}}],)" + nodes +
+                        R"(],"scene":0,"scenes":[{"nodes":[)" + roots + "]}]");
+    EXPECT_EQ(scene.cameras.size(), 4096u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0], "it has 5000 cameras; the first 4096 can be chosen");
+}
+
 TEST(GltfImport, NodesParentsFirstOnlyOfTheDefaultScene) {
     Scene const scene = import_triangle(
         R"("scene":1,"scenes":[{"nodes":[0]},{"nodes":[3]}],)"

@@ -95,10 +95,11 @@ TEST_P(LossyDelivery, ConvergesToTheExactPicture) {
     tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, GetParam());
     Scene const scene = import_scene(FRAMELET_SOURCE_DIR "/scenes/vehicle_chase.glb");
     RenderScene render_scene(scene, std::nullopt);
+    PosedScene posed(scene, {}, render_scene);
     ServerOptions options;
     options.port = 0;
     options.paused = true;
-    Server server(scene, {}, render_scene, options);
+    Server server(posed, options);
     std::jthread const running([&server] { server.run(); });
     Shown const exact = watch(server.port(), coding::exact_colour);
     bench::LinkEmulator const link(server.port(), {.bits_per_second = 1.5e6, .delay_seconds = 0.002});

@@ -4,6 +4,7 @@
 #include <thread>
 
 #include "server/session/server.h"
+#include "server/stream/posed_scene.h"
 #include "tests/session/triangle_scenes.h"
 
 namespace framelet {
@@ -12,7 +13,7 @@ class RunningServer {
 public:
     explicit RunningServer(ServerOptions options = {}, Scene scene = triangle_scene())
         : scene_(std::move(scene)), render_scene_(scene_, std::nullopt),
-          server_(scene_, default_clips(scene_), render_scene_, on_free_port(options)),
+          posed_(scene_, default_clips(scene_), render_scene_), server_(posed_, on_free_port(options)),
           thread_([this] { server_.run(); }) {}
     ~RunningServer() { server_.stop(); }
 
@@ -27,6 +28,7 @@ private:
 
     Scene const scene_;
     RenderScene render_scene_;
+    PosedScene posed_;
     Server server_;
     std::jthread thread_;
 };

@@ -12,6 +12,8 @@
 #include "protocol/stream/stream_opening.h"
 #include "raw_viewer.h"
 #include "running_server.h"
+#include "server/session/listener.h"
+#include "server/session/loaded_scene.h"
 
 namespace framelet {
 namespace {
@@ -318,17 +320,42 @@ TEST(Server, WhoKnowsTheTokenForItSetsTheClock) {
     EXPECT_TRUE(hears(watching, [](Status const& status) { return status.clock.time == 9 && !status.controls; }));
 }
 
+/// A scene may take long to be made ready, and nobody is heard while the server does so.
+TEST(Server, ASceneThatReplacesAnotherIsReadyWhenItIsGiven) {
+    auto const load = [](std::string const& name) {
+        auto loaded = std::make_unique<LoadedScene>(triangle_scene(), std::vector<Index>{}, std::nullopt, 0.0f,
+                                                    [](std::string_view, double) {});
+        loaded->welcome.scene_name = name;
+        return loaded;
+    };
+    Server server(load("first"), {}, std::make_unique<Listener>("127.0.0.1", std::uint16_t{0}));
+    std::jthread const running([&server] { server.run(); });
+    auto const name_of_scene = [&] {
+        auto const first = RawViewer(server.port()).receive();
+        auto const* const welcome = first ? std::get_if<Welcome>(&*first) : nullptr;
+        return welcome != nullptr ? welcome->scene_name : "";
+    };
+    EXPECT_EQ(name_of_scene(), "first");
+    RawViewer viewer(server.port());
+    ASSERT_TRUE(viewer.receive());
+    server.replace_scene(load("second"));
+    EXPECT_NE(viewer.failure(), "");
+    EXPECT_EQ(name_of_scene(), "second");
+    server.stop();
+}
+
 TEST(Server, AddressesThatCannotBeHadAreInputErrors) {
     Scene const scene = triangle_scene();
     RenderScene render_scene(scene, std::nullopt);
+    PosedScene posed(scene, {}, render_scene);
     ServerOptions options;
     options.bind = "no.such.host.invalid";
-    EXPECT_THROW(Server(scene, {}, render_scene, options), InputError);
+    EXPECT_THROW(Server(posed, options), InputError);
     options.bind = "127.0.0.1";
     options.port = 0;
-    Server const first(scene, {}, render_scene, options);
+    Server const first(posed, options);
     options.port = first.port();
-    EXPECT_THROW(Server(scene, {}, render_scene, options), InputError);
+    EXPECT_THROW(Server(posed, options), InputError);
 }
 
 TEST(Server, KnowsWhatOnlyThisMachineReaches) {

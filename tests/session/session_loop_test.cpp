@@ -66,7 +66,7 @@ public:
             std::size_t const viewer = next++; // in the order of the sessions
             return std::make_unique<ScriptedStream>(scripts_[viewer], [this, viewer] { plan_of(viewer); });
         };
-        loop_ = std::make_unique<SessionLoop>(scene_, std::vector<Index>{}, render_scene_, clock_, std::move(options),
+        loop_ = std::make_unique<SessionLoop>(posed_, clock_, std::move(options),
                                               SessionLoop::Events{[this] { return sessions_; }, [] {}});
         thread_ = std::thread([this] { loop_->run(); });
     }
@@ -119,6 +119,7 @@ private:
 
     Scene const scene_ = triangle_scene();
     RenderScene render_scene_{scene_, std::nullopt};
+    PosedScene posed_{scene_, {}, render_scene_};
     SceneClock clock_{false, std::chrono::steady_clock::now()};
     std::atomic<double> set_time_ = -1;
     std::vector<Script> scripts_;

@@ -121,7 +121,14 @@ void finish_lights(Scene& scene) {
     }
 }
 
+/// Drops cameras beyond those that anybody would choose from, and that a Welcome has room for.
 void finish_cameras(Scene& scene) {
+    constexpr std::size_t most_cameras = 4096;
+    if (std::size_t const all = scene.cameras.size(); all > most_cameras) {
+        scene.cameras.erase(scene.cameras.begin() + most_cameras, scene.cameras.end());
+        scene.warnings.push_back("it has " + std::to_string(all) + " cameras; the first " +
+                                 std::to_string(most_cameras) + " can be chosen");
+    }
     for (SceneCamera& camera : scene.cameras) {
         bool const perspective = camera.projection == Projection::perspective;
         float const largest = perspective ? 3.1f : max_coordinate;

@@ -149,8 +149,13 @@ BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, I
     return track;
 }
 
-bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera) {
-    return moving_nodes(scene, clips)[static_cast<std::size_t>(scene.cameras[static_cast<std::size_t>(camera)].node)];
+std::vector<bool> moving_cameras(Scene const& scene, std::span<Index const> clips) {
+    std::vector<bool> const moving = moving_nodes(scene, clips);
+    std::vector<bool> cameras;
+    for (SceneCamera const& camera : scene.cameras) {
+        cameras.push_back(moving[static_cast<std::size_t>(camera.node)]);
+    }
+    return cameras;
 }
 
 } // namespace framelet

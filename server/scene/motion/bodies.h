@@ -44,7 +44,7 @@ std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> cl
 BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
                              std::size_t count);
 
-/// True for a camera of the scene that goes with something that moves.
-bool camera_moves(Scene const& scene, std::span<Index const> clips, Index camera);
+/// True for each camera of the scene that goes with something that moves.
+std::vector<bool> moving_cameras(Scene const& scene, std::span<Index const> clips);
 
 } // namespace framelet

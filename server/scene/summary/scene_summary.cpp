@@ -59,9 +59,9 @@ Json summarize(Scene const& scene, std::span<Index const> clips) {
         lights.push_back({{"name", light.name}, {"kind", kind_of(light.type)}});
     }
     Json& cameras = out["cameras"] = Json::array();
+    std::vector<bool> const moving_ones = moving_cameras(scene, clips);
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
-        cameras.push_back(
-            {{"name", scene.cameras[i].name}, {"moves", camera_moves(scene, clips, static_cast<Index>(i))}});
+        cameras.push_back({{"name", scene.cameras[i].name}, {"moves", bool{moving_ones[i]}}});
     }
     Json& all_clips = out["clips"] = Json::array();
     for (std::size_t i = 0; i < scene.clips.size(); ++i) {

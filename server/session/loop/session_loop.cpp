@@ -61,10 +61,9 @@ struct SessionLoop::Pipeline {
     bool is_unlearnt() const { return rendered && !rendered->learnt; }
 };
 
-SessionLoop::SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
-                         SceneClock const& clock, LoopOptions options, Events events)
-    : scene_(scene, std::move(clips), render_scene), clock_(clock), options_(std::move(options)),
-      events_(std::move(events)), pipeline_(std::make_unique<Pipeline>()) {}
+SessionLoop::SessionLoop(PosedScene& scene, SceneClock const& clock, LoopOptions options, Events events)
+    : scene_(scene), clock_(clock), options_(std::move(options)), events_(std::move(events)),
+      pipeline_(std::make_unique<Pipeline>()) {}
 
 SessionLoop::~SessionLoop() {
     pipeline_->finishing.wait();

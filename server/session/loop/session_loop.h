@@ -41,8 +41,7 @@ public:
     };
 
     /// Scene and clock must outlive the loop.
-    SessionLoop(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, SceneClock const& clock,
-                LoopOptions options, Events events);
+    SessionLoop(PosedScene& scene, SceneClock const& clock, LoopOptions options, Events events);
     ~SessionLoop();
 
     /// Serves until `stop`; on the calling thread, with the worker threads of its TBB arena. None of these goes on
@@ -84,7 +83,7 @@ private:
     void drop_rendered(Session const& session);
     void forget_ended();
 
-    PosedScene scene_;
+    PosedScene& scene_;
     SceneClock const& clock_;
     LoopOptions const options_;
     Events const events_;

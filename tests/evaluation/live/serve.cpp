@@ -83,7 +83,8 @@ void serve_method(ServeOptions const& options) {
         setup.rivals = options.rivals;
         return std::make_unique<MethodStream>(options.method, *scene, setup);
     };
-    Server server(scene->scene, scene->clips, *scene->render_scene, server_options);
+    PosedScene posed(scene->scene, scene->clips, *scene->render_scene);
+    Server server(posed, server_options);
     server.take_signals();
     std::cout << "listening on " << server.addresses().front() << std::endl;
     server.run();
