@@ -6,12 +6,17 @@
 #include <ctime>
 #include <iostream>
 #include <memory>
+#include <mutex>
+#include <utility>
 
 #include <nlohmann/json.hpp>
+#include <poll.h>
 #include <spdlog/formatter.h>
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include "common/counted.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -41,6 +46,34 @@ public:
     std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
 };
 
+/// Standard error, which nobody waits for: while whoever should read it does not, lines are dropped and counted. The
+/// loop and the network write them, and would stand still with it.
+class UnwaitedSink final : public spdlog::sinks::stderr_color_sink_mt {
+public:
+    void log(spdlog::details::log_msg const& message) override {
+        std::scoped_lock const lock(writing_);
+        if (dropped_ > 0 && takes_a_line()) {
+            std::string const note = "dropped " + counted(std::exchange(dropped_, 0), "line") + " that nobody read";
+            ansicolor_stderr_sink::log({message.time, {}, message.logger_name, spdlog::level::warn, note});
+        }
+        if (takes_a_line()) {
+            ansicolor_stderr_sink::log(message);
+        } else {
+            ++dropped_;
+        }
+    }
+
+private:
+    /// True where at least 4 KB can be written at once, or an error says that there is nothing to wait for.
+    static bool takes_a_line() {
+        pollfd out{STDERR_FILENO, POLLOUT, 0};
+        return ::poll(&out, 1, 0) != 0;
+    }
+
+    std::mutex writing_;
+    std::size_t dropped_ = 0;
+};
+
 } // namespace
 
 LogFormat parse_log_format(std::string const& text) {
@@ -57,7 +90,7 @@ std::string json_log_line(spdlog::log_clock::time_point time, std::string_view l
 }
 
 void open_log(LogFormat format, bool quiet) {
-    spdlog::set_default_logger(spdlog::stderr_color_mt("framelet"));
+    spdlog::set_default_logger(std::make_shared<spdlog::logger>("framelet", std::make_shared<UnwaitedSink>()));
     spdlog::set_level(quiet ? spdlog::level::warn : spdlog::level::info);
     if (format == LogFormat::json) {
         spdlog::set_formatter(std::make_unique<JsonFormatter>());

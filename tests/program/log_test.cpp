@@ -2,11 +2,16 @@
 #include "server/program/log.h"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <spdlog/spdlog.h>
+#include <unistd.h>
 
+#include "common/counted.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -41,6 +46,42 @@ TEST(JsonLog, FormatsAreTextAndJson) {
     EXPECT_EQ(parse_log_format("text"), LogFormat::text);
     EXPECT_EQ(parse_log_format("json"), LogFormat::json);
     EXPECT_THROW(parse_log_format("JSON"), InputError);
+}
+
+/// A server whose log goes into a pipe that nobody reads used to stand still once that was full.
+TEST(Log, LinesThatNobodyReadsAreDroppedAndCounted) {
+    int ends[2];
+    ASSERT_EQ(::pipe2(ends, O_NONBLOCK | O_CLOEXEC), 0);
+    ::fcntl(ends[1], F_SETFL, 0);
+    int const errors = ::dup(STDERR_FILENO);
+    ASSERT_EQ(::dup2(ends[1], STDERR_FILENO), STDERR_FILENO);
+    auto const read_all = [&] {
+        std::string text;
+        std::array<char, 4096> some;
+        for (ssize_t bytes = 0; (bytes = ::read(ends[0], some.data(), some.size())) > 0;) {
+            text.append(some.data(), static_cast<std::size_t>(bytes));
+        }
+        return text;
+    };
+    open_log(LogFormat::text, false);
+    constexpr std::size_t lines = 10'000;
+    for (std::size_t i = 0; i < lines; ++i) {
+        spdlog::info("a viewer that has nothing to say and a long way to say it in");
+    }
+    std::string const before = read_all();
+    spdlog::info("the last line");
+    std::string const after = read_all();
+    ::dup2(errors, STDERR_FILENO);
+    for (int const descriptor : {ends[0], ends[1], errors}) {
+        ::close(descriptor);
+    }
+    auto const written = static_cast<std::size_t>(std::ranges::count(before, '\n'));
+    EXPECT_GT(written, 0u);
+    EXPECT_EQ(before.back(), '\n');
+    EXPECT_NE(after.find("warning dropped " + counted(lines - written, "line") + " that nobody read\n"),
+              std::string::npos)
+        << after;
+    EXPECT_NE(after.find("the last line\n"), std::string::npos) << after;
 }
 
 } // namespace
