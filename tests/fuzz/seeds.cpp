@@ -9,6 +9,7 @@
 #include "protocol/codec/batch_codec.h"
 #include "protocol/codec/color/plane_codec.h"
 #include "protocol/codec/geometry/shape_coding.h"
+#include "protocol/codec/geometry/track_codec.h"
 #include "protocol/messages/message_codec.h"
 #include "tests/fuzz/session_input.h"
 
@@ -127,7 +128,7 @@ void write_waiting(std::filesystem::path const& folder) {
     std::vector<std::uint8_t> bodies;
     BatchCodec codec;
     BatchMemory memory;
-    for (int i = 0; i < 30; ++i) {
+    for (int i = 0; i < 60; ++i) {
         std::vector<std::uint8_t> body;
         append(body, encode_message(codec.encode(batch, &memory)));
         bodies.push_back(static_cast<std::uint8_t>(body.size()));
@@ -138,7 +139,10 @@ void write_waiting(std::filesystem::path const& folder) {
         batch.framelets.clear();
         batch.qp.clear();
         batch.shapes.clear();
-        batch.tracks.assign(1, {1, 0, std::vector<BodyPose>(max_batch_keys / 4)});
+        batch.tracks.clear();
+        for (BodyNumber moving = 1; moving <= 32; ++moving) {
+            batch.tracks.push_back({moving, 0, std::vector<BodyPose>(max_track_keys)});
+        }
     }
     write(folder / "viewer" / "waiting", bodies);
 }
