@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <cstdlib>
 #include <exception>
 #include <fstream>
 #include <iostream>
@@ -10,7 +11,9 @@
 #include <memory>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spdlog/spdlog.h>
+#include <sys/prctl.h>
 #include <tbb/global_control.h>
 #include <unistd.h>
 
@@ -64,10 +67,23 @@ Progress loading_bar(Options const& options) {
     return make_progress_bar(options.quiet || options.log == LogFormat::json); // whose lines it would stand among
 }
 
+/// From now on this process ends with the one that has started it and waits for what it says.
+void end_with_who_asked() {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+    pollfd told{STDOUT_FILENO, 0, 0};
+    if (::poll(&told, 1, 0) > 0 && (told.revents & POLLERR) != 0) { // it has ended before that
+        std::_Exit(1);
+    }
+}
+
 /// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
 /// asks about.
 void print_info(Options const& options) {
-    Scene const scene = import_scenes(options.scenes, loading_bar(options), options.import);
+    if (options.progress_lines) {
+        end_with_who_asked();
+    }
+    Scene const scene = import_scenes(
+        options.scenes, options.progress_lines ? make_progress_lines() : loading_bar(options), options.import);
     std::vector<Index> const clips = chosen_clips(scene, options.import);
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }

@@ -92,8 +92,9 @@ void SceneReloader::reload(std::stop_token const& stop) {
         asked_ = false;
     }
     try {
-        auto scene = load_([&stop](std::string_view, double) {
-            if (stop.stop_requested()) {
+        auto scene = load_([this, &stop](std::string_view, double) {
+            std::scoped_lock const lock(mutex_);
+            if (stop.stop_requested() || asked_) {
                 throw LoadEnded();
             }
         });

@@ -28,7 +28,8 @@ public:
     SceneReloader(std::optional<FileWatch> watch, std::vector<std::filesystem::path> scene_files,
                   std::filesystem::path environment_file, std::vector<std::filesystem::path> files, Load load,
                   Take take);
-    /// Asks for the scene to be loaded again, whether anything has changed or not. May be called from any thread.
+    /// Asks for the scene to be loaded again, whether anything has changed or not: a load on its way ends for that when
+    /// it next reports how far it is. May be called from any thread.
     void ask();
 
 private:

@@ -247,6 +247,33 @@ TEST_F(Reloading, AFileThatTakesTooMuchLeavesTheSceneAsItWas) {
     EXPECT_TRUE(viewer.comes_back(1)) << server.process().errors();
 }
 
+/// What reads a scene first may never come to an end of it; here it cannot say what it has found.
+TEST(ImportProcess, EndsWithTheServerThatHasStartedIt) {
+    TemporaryFolder const folder;
+    std::string nodes(R"({"mesh":0})");
+    for (int i = 0; i < 5000; ++i) {
+        nodes += R"(,{"camera":0})";
+    }
+    std::string const scene =
+        folder.write("cameras.gltf", R"({"asset":{"version":"2.0"},"nodes":[)" + nodes +
+                                         R"(],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],)"
+                                         R"("meshes":[{"primitives":[{"attributes":{}}]}]})");
+    std::string const reader = "echo $$ > reader; exec " FRAMELET_SERVER " --info --json --progress-lines " + scene;
+    Process shell("/bin/sh", {"-c", "cd " + folder.path().string() + "; sh -c '" + reader +
+                                        "' | sh -c 'read line; echo $$ > idle; exec sleep 1000'"});
+    auto const id_in = [&](char const* name) {
+        pid_t id = 0;
+        return eventually([&] { return bool(std::ifstream(folder.path() / name) >> id); }) ? id : pid_t{0};
+    };
+    pid_t const reading = id_in("reader"), idle = id_in("idle");
+    ASSERT_GT(reading, 0);
+    ASSERT_GT(idle, 0);
+    EXPECT_EQ(::kill(reading, 0), 0);
+    shell.signal(SIGKILL);
+    EXPECT_TRUE(eventually([&] { return ::kill(reading, 0) != 0; }));
+    ::kill(idle, SIGKILL);
+}
+
 TEST_F(Reloading, WhereTheTerminalIsGoneTheServerEnds) {
     int terminal = -1;
     pid_t const server = ::forkpty(&terminal, nullptr, nullptr, nullptr);

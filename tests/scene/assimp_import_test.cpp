@@ -1,6 +1,7 @@
 #include "server/scene/assimp/assimp_import.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "common/error.h"
 #include "common/files/picture_writer.h"
@@ -127,6 +128,16 @@ TEST(AssimpImport, OtherFormats) {
     EXPECT_EQ(ply.meshes.at(0).primitives.at(0).triangles.size(), 2u);
 }
 
+/// Whoever opens a pipe waits for somebody to write.
+TEST(AssimpImport, APipeInPlaceOfAMaterialFileIsNotWaitedFor) {
+    TemporaryFolder const folder;
+    ASSERT_EQ(::mkfifo((folder.path() / "a.mtl").c_str(), 0600), 0);
+    Scene const scene = import_scene(folder.write("a.obj", "mtllib a.mtl\n" + quad + "f 1 2 3\n"));
+    EXPECT_EQ(scene.meshes.size(), 1u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_NE(scene.warnings[0].find("a.mtl"), std::string::npos) << scene.warnings[0];
+}
+
 TEST(AssimpImport, HeadersThatPromiseMoreThanTheFileHolds) {
     TemporaryFolder const folder;
     auto const ply = [](std::string const& vertices, std::string const& faces) {
@@ -135,6 +146,8 @@ TEST(AssimpImport, HeadersThatPromiseMoreThanTheFileHolds) {
                "\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     };
     EXPECT_NO_THROW(import_scene(folder.write("a.ply", ply("3", "1"))));
+    std::string const endless = "ply\nformat ascii 1.0\ncomment a header that has no end";
+    EXPECT_THROW(import_scene(folder.write("endless.ply", endless)), InputError);
     EXPECT_NO_THROW(import_scene(folder.write("a.off", "OFF\n# a comment\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")));
     for (auto const& [name, text] :
          std::vector<std::pair<std::string, std::string>>{{"b.ply", ply("4000000000", "1")},

@@ -45,7 +45,7 @@ TEST_F(ImportCheck, IsAskedAboutTheFileWithinTheSameLimits) {
     std::ifstream asked(folder_.path() / "asked");
     std::string line;
     std::getline(asked, line);
-    EXPECT_EQ(line, "--info --quiet --scene-memory 300 --allow-outside -- " + file_.string());
+    EXPECT_EQ(line, "--info --progress-lines --quiet --scene-memory 300 --allow-outside -- " + file_.string());
 }
 
 TEST_F(ImportCheck, WhatItSaysIsSaidAsIfItHadBeenReadHere) {
@@ -82,6 +82,22 @@ TEST_F(ImportCheck, IsEndedWithTheLoad) {
     };
     EXPECT_THROW(import_scene(file_, progress, options_), Ended);
     EXPECT_NE(::kill(id, 0), 0);
+}
+
+TEST_F(ImportCheck, WhatMakesNoProgressIsEnded) {
+    std::filesystem::path const number = folder_.path() / "number";
+    be("echo $$ > " + number.string() + "; echo a sign of life; exec sleep 1000");
+    options_.checker_patience = std::chrono::milliseconds(1500);
+    EXPECT_EQ(complaint(), prefix() + "nothing has come of reading it for 1 second");
+    int id = 0;
+    ASSERT_TRUE(std::ifstream(number) >> id);
+    EXPECT_NE(::kill(id, 0), 0);
+}
+
+/// It says more than a pipe holds, and closes its output before it ends.
+TEST_F(ImportCheck, WhatItSaysOfItsProgressIsReadAndOfNoAccount) {
+    be("i=0; while [ $i -lt 20000 ]; do echo loading $i; i=$((i+1)); done; exec >&-; sleep 0.3");
+    EXPECT_EQ(complaint(), "");
 }
 
 TEST_F(ImportCheck, IsAskedAboutEveryFormat) {

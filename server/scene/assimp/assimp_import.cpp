@@ -43,10 +43,10 @@ public:
     PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing)
         : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing) {}
 
-    bool Exists(char const* file) const override { return permits(file) && DefaultIOSystem::Exists(file); }
+    bool Exists(char const* file) const override { return is_readable(file); }
 
     Assimp::IOStream* Open(char const* file, char const* mode) override {
-        Assimp::IOStream* const stream = permits(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+        Assimp::IOStream* const stream = is_readable(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
         if (!stream) {
             missing_.emplace_back(file);
         }
@@ -54,7 +54,11 @@ public:
     }
 
 private:
-    bool permits(char const* file) const { return file == scene_file_ || folder_.permits(file); }
+    /// False for what is no file: whoever opens a pipe waits for it.
+    bool is_readable(char const* file) const {
+        std::error_code code;
+        return (file == scene_file_ || folder_.permits(file)) && std::filesystem::is_regular_file(file, code);
+    }
 
     std::string scene_file_;
     SceneFolder const& folder_;

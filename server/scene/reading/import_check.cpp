@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <fcntl.h>
@@ -14,6 +16,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "common/counted.h"
 #include "common/error.h"
 
 namespace framelet {
@@ -22,7 +25,47 @@ namespace {
 constexpr int look_milliseconds = 100; ///< between reports of progress
 constexpr std::size_t most_text = 4096;
 
-/// A program at work, which is killed where it has not ended at the end of the scope. Only its errors are read.
+InputError not_started(int error) {
+    return InputError(std::string("no process can be started that would read it first: ") + std::strerror(error));
+}
+
+/// A pipe, closed at the end of the scope.
+class Pipe {
+public:
+    Pipe() {
+        if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
+            throw not_started(errno);
+        }
+    }
+    ~Pipe() {
+        ::close(ends_[0]);
+        close_writing();
+    }
+    Pipe(Pipe const&) = delete;
+    Pipe& operator=(Pipe const&) = delete;
+
+    int reading() const { return ends_[0]; }
+    int writing() const { return ends_[1]; }
+    void close_writing() {
+        if (ends_[1] >= 0) {
+            ::close(std::exchange(ends_[1], -1));
+        }
+    }
+    /// Adds what is there to `text`, of which the end is kept; false at the end.
+    bool read(std::string& text) const {
+        std::array<char, 4096> some;
+        ssize_t const bytes = ::read(reading(), some.data(), some.size());
+        text.append(some.data(), static_cast<std::size_t>(std::max<ssize_t>(bytes, 0)));
+        text.erase(0, text.size() - std::min(text.size(), most_text));
+        return bytes > 0;
+    }
+
+private:
+    std::array<int, 2> ends_{-1, -1};
+};
+
+/// A program at work, which is killed where it has not ended at the end of the scope. Its errors are read, and that it
+/// says something else.
 class Program {
 public:
     /// Throws InputError where it cannot be started.
@@ -33,20 +76,13 @@ public:
             arguments.push_back(word.data());
         }
         arguments.push_back(nullptr);
-        int ends[2];
-        if (::pipe2(ends, O_CLOEXEC) != 0) {
-            throw not_started(errno);
-        }
-        errors_ = ends[0];
-        int const error = spawn(program, ends[1], arguments.data());
-        ::close(ends[1]);
-        if (error != 0) {
-            ::close(errors_);
+        if (int const error = spawn(program, arguments.data())) {
             throw not_started(error);
         }
+        signs_.close_writing();
+        errors_.close_writing();
     }
     ~Program() {
-        ::close(errors_);
         if (!has_ended_) {
             ::kill(id_, SIGKILL);
             wait();
@@ -55,22 +91,29 @@ public:
     Program(Program const&) = delete;
     Program& operator=(Program const&) = delete;
 
-    /// The end of what it writes to stderr until it closes that.
-    std::string read_errors(Progress const& progress) const {
-        std::string text;
-        std::array<char, 512> some;
+    /// The end of what it writes to stderr until it closes that. Throws InputError where it goes on for longer than
+    /// `patience` and says nothing on stdout.
+    std::string read_errors(Progress const& progress, std::chrono::milliseconds patience) const {
+        using std::chrono::steady_clock;
+        std::string text, ignored;
+        std::array<pollfd, 2> wanted{{{errors_.reading(), POLLIN, 0}, {signs_.reading(), POLLIN, 0}}};
+        auto last_sign = steady_clock::now();
         for (;;) {
             progress("reading", 0);
-            pollfd wanted{errors_, POLLIN, 0};
-            if (::poll(&wanted, 1, look_milliseconds) <= 0) {
+            if (steady_clock::now() - last_sign > patience) {
+                throw InputError("nothing has come of reading it for " +
+                                 counted(static_cast<std::size_t>(patience / std::chrono::seconds(1)), "second"));
+            }
+            if (::poll(wanted.data(), wanted.size(), look_milliseconds) <= 0) {
                 continue;
             }
-            ssize_t const bytes = ::read(errors_, some.data(), some.size());
-            if (bytes <= 0) {
+            if (wanted[0].revents != 0 && !errors_.read(text)) {
                 return text;
             }
-            text.append(some.data(), static_cast<std::size_t>(bytes));
-            text.erase(0, text.size() - std::min(text.size(), most_text));
+            if (wanted[1].revents != 0) {
+                last_sign = steady_clock::now();
+                wanted[1].fd = signs_.read(ignored) ? wanted[1].fd : -1; // at its end it is looked at no more
+            }
         }
     }
 
@@ -86,8 +129,8 @@ public:
     }
 
 private:
-    /// Starts the program with `errors` as its stderr. Returns an error number, 0 where it runs.
-    int spawn(std::filesystem::path const& program, int errors, char* const* arguments) {
+    /// Starts the program. Returns an error number, 0 where it runs.
+    int spawn(std::filesystem::path const& program, char* const* arguments) {
         posix_spawn_file_actions_t files;
         posix_spawnattr_t how;
         if (int const error = ::posix_spawn_file_actions_init(&files)) {
@@ -99,8 +142,8 @@ private:
             error = ::posix_spawnattr_setflags(&how, POSIX_SPAWN_SETPGROUP);
             auto const then = [&error](auto const& step) { error = error == 0 ? step() : error; };
             then([&] { return ::posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0); });
-            then([&] { return ::posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0); });
-            then([&] { return ::posix_spawn_file_actions_adddup2(&files, errors, STDERR_FILENO); });
+            then([&] { return ::posix_spawn_file_actions_adddup2(&files, signs_.writing(), STDOUT_FILENO); });
+            then([&] { return ::posix_spawn_file_actions_adddup2(&files, errors_.writing(), STDERR_FILENO); });
             // Connections must not outlive us there.
             then([&] { return ::posix_spawn_file_actions_addclosefrom_np(&files, STDERR_FILENO + 1); });
             then([&] { return ::posix_spawn(&id_, program.c_str(), &files, &how, arguments, environ); });
@@ -110,12 +153,8 @@ private:
         return error;
     }
 
-    static InputError not_started(int error) {
-        return InputError(std::string("no process can be started that would read it first: ") + std::strerror(error));
-    }
-
+    Pipe signs_, errors_; ///< its stdout and stderr
     pid_t id_ = 0;
-    int errors_ = -1;
     bool has_ended_ = false;
 };
 
@@ -132,14 +171,14 @@ std::string complaint(std::string text, std::filesystem::path const& file) {
 } // namespace
 
 void check_import(std::filesystem::path const& file, ImportOptions const& options, Progress const& progress) {
-    std::vector<std::string> words{"--info", "--quiet", "--scene-memory",
+    std::vector<std::string> words{"--info", "--progress-lines", "--quiet", "--scene-memory",
                                    std::to_string(std::max<std::uint64_t>(options.memory_bytes >> 20, 1))};
     if (options.allow_outside) {
         words.emplace_back("--allow-outside");
     }
     words.insert(words.end(), {"--", file.string()});
     Program program(options.checker, std::move(words));
-    std::string const text = complaint(program.read_errors(progress), file);
+    std::string const text = complaint(program.read_errors(progress, options.checker_patience), file);
     int const status = program.wait();
     if (WIFSIGNALED(status)) {
         throw InputError(std::string("it ends the process that reads it: ") + ::strsignal(WTERMSIG(status)));

@@ -11,8 +11,8 @@
 namespace framelet {
 
 /// Throws InputError, without the file's name, where `options.checker` cannot read the file within `options`, or does
-/// not come to an end of it. Where `progress` throws the process is ended. What the file has become meanwhile is not
-/// known.
+/// not come to an end of it: it is ended once its standard output has said nothing for longer than its patience. Where
+/// `progress` throws the process is ended too. What the file has become meanwhile is not known.
 void check_import(std::filesystem::path const& file, ImportOptions const& options, Progress const& progress);
 
 } // namespace framelet

@@ -1,6 +1,7 @@
 // What whoever has a scene read may ask for.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -23,6 +24,8 @@ struct ImportOptions {
     /// Program, framelet-server itself, that tries a file before this process reads it. Empty: there is none, and while
     /// Assimp reads, this process as a whole gets no more memory than what is left of `memory_bytes`.
     std::filesystem::path checker;
+    /// How long the checker may go on without a sign of progress.
+    std::chrono::milliseconds checker_patience = std::chrono::minutes(5);
 };
 
 } // namespace framelet
