@@ -94,7 +94,6 @@ void Session::resume(std::shared_ptr<Session> earlier, std::uint64_t last_batch)
 
 bool Session::take_over(Session& earlier) {
     std::deque<std::shared_ptr<Message const>> lacked;
-    std::shared_ptr<Session> taken; // goes once nothing is locked
     {
         std::scoped_lock const lock(mutex_, earlier.mutex_);
         if (earlier_.get() != &earlier || !earlier.parked_) {
@@ -107,7 +106,7 @@ bool Session::take_over(Session& earlier) {
         lacked = std::move(earlier.kept_);
         std::erase_if(lacked, [this](auto const& message) { return batch_of(message).number <= last_batch_; });
         earlier.parked_ = false;
-        taken = std::move(earlier_);
+        earlier_.reset();
     }
     for (auto const& message : lacked) {
         send_batch(message);

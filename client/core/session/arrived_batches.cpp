@@ -5,6 +5,7 @@
 #include "common/framelet/waiting_batch.h"
 
 namespace framelet {
+
 void ArrivedBatches::add(Batch batch) {
     bytes_ += bytes_of(batch);
     waiting_.push_back(std::move(batch));
