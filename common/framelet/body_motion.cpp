@@ -185,9 +185,8 @@ SceneTime BodyMotions::last_jump(SceneTime time) const {
 
 bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {
     auto const rests = [&](auto const& one) {
-        return one.velocity == Vec3(0) &&
-               (one.body == static_body ||
-                motions.rests(one.body, scene_time - resting_seconds, scene_time + resting_seconds));
+        return !one.drift.any() && (one.body == static_body || motions.rests(one.body, scene_time - resting_seconds,
+                                                                             scene_time + resting_seconds));
     };
     return std::all_of(shape.layers.begin(), shape.layers.begin() + shape.layer_count, rests) &&
            std::ranges::all_of(shape.outliers, rests);

@@ -27,9 +27,9 @@ struct Framelet {
     std::array<float, framelet_samples> depth;
     /// The body that carries each sample. Empty: the static body carries them all.
     std::vector<BodyNumber> body;
-    /// Velocities, metres a second in the world at the scene time, of samples on what deforms and of shadows that pass
-    /// over the static body; 0 for all others. Empty: all are 0.
-    std::vector<Vec3> velocity;
+    /// How samples on what deforms, and shadows that pass over the static body, go on; 0 for all others. Empty: all are
+    /// 0.
+    std::vector<Drift> drift;
     /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
     std::bitset<framelet_samples> reflects;
     bool is_supersampled = false; ///< each sample is the mean of four rays

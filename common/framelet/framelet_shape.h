@@ -25,15 +25,47 @@ inline constexpr std::size_t max_layers = 3;
 /// though it stays where it is. See `common/framelet/sample_worth.h`. 0: its looks do not change.
 using DecorrelationCode = std::uint8_t;
 
+/// How a sample goes on besides the motion of its body: of what deforms, and of a shadow that passes over what stands.
+/// After s seconds of scene time, of either sign, it is s * velocity + s^2 / 2 * acceleration farther, metres in the
+/// world, and at most jerk * |s|^3 / 6 metres off that.
+struct Drift {
+    Vec3 velocity{0}; ///< metres a second
+    Vec3 acceleration{0}; ///< metres a second squared
+    float jerk = 0; ///< metres a second cubed, >= 0
+
+    bool operator==(Drift const&) const = default;
+
+    bool any() const { return velocity != Vec3(0) || acceleration != Vec3(0) || jerk != 0; }
+    Vec3 after(float seconds) const { return seconds * velocity + (0.5f * seconds * seconds) * acceleration; }
+};
+
+/// The drift of a layer's samples, affine on the image plane: that at the tile's upper left corner, and what it changes
+/// by a pixel to the right and down. The jerk is that of all samples.
+struct LayerDrift {
+    Drift corner;
+    Vec3 velocity_dx{0}, velocity_dy{0};
+    Vec3 acceleration_dx{0}, acceleration_dy{0};
+
+    bool operator==(LayerDrift const&) const = default;
+
+    bool any() const {
+        return corner.any() || velocity_dx != Vec3(0) || velocity_dy != Vec3(0) || acceleration_dx != Vec3(0) ||
+               acceleration_dy != Vec3(0);
+    }
+    /// The drift so many pixels from the corner.
+    Drift at(Vec2 from_corner) const {
+        return {corner.velocity + from_corner.x * velocity_dx + from_corner.y * velocity_dy,
+                corner.acceleration + from_corner.x * acceleration_dx + from_corner.y * acceleration_dy, corner.jerk};
+    }
+};
+
 /// A plane on one body. The inverse of the view depth (1 / metres, 0 at infinity) is affine on the image plane:
 /// at + dx * (x - left) + dy * (y - top), where (x, y) is in pixels and (left, top) the tile's upper left corner.
 struct Layer {
     float at = 0, dx = 0, dy = 0;
     float error = 0; ///< largest difference from the inverse depth of a sample that lies on it, 1 / metres
     BodyNumber body = static_body;
-    /// Velocity besides the body's motion of what deforms and of a shadow that passes over the plane, metres a second
-    /// in the world at the framelet's scene time; else 0.
-    Vec3 velocity{0};
+    LayerDrift drift;
 
     bool operator==(Layer const&) const = default;
 };
@@ -42,14 +74,15 @@ struct Layer {
 struct Outlier {
     float inverse_depth = 0; ///< 1 / metres along the forward axis of the framelet's camera
     BodyNumber body = static_body;
-    Vec3 velocity{0}; ///< as that of a layer, metres a second
+    Drift drift;
 
     bool operator==(Outlier const&) const = default;
 };
 
-/// True when a sample of this body and velocity may be elsewhere at another time.
-inline bool moves(BodyNumber body, Vec3 const& velocity) {
-    return body != static_body || velocity != Vec3(0);
+/// True when samples of this body and drift may be elsewhere at another time.
+template <class AnyDrift>
+bool moves(BodyNumber body, AnyDrift const& drift) {
+    return body != static_body || drift.any();
 }
 
 struct FrameletShape {
@@ -57,6 +90,9 @@ struct FrameletShape {
 
     std::uint8_t layer_count = 0;
     DecorrelationCode decorrelation = 0; ///< of what the framelet shows
+    /// How its samples drift is known for so short a time that a newer framelet replaces it in its place, as if nothing
+    /// moved.
+    bool is_brief = false;
     std::array<Layer, max_layers> layers;
     /// The layer that each sample lies on, or `outlier`, in Morton order.
     std::array<std::uint8_t, framelet_samples> layer_of{};
@@ -65,7 +101,7 @@ struct FrameletShape {
 
     /// True when something in the framelet may be elsewhere at another time.
     bool moves() const {
-        auto const one_moves = [](auto const& one) { return framelet::moves(one.body, one.velocity); };
+        auto const one_moves = [](auto const& one) { return framelet::moves(one.body, one.drift); };
         return std::any_of(layers.begin(), layers.begin() + layer_count, one_moves) ||
                std::any_of(outliers.begin(), outliers.end(), one_moves);
     }

@@ -27,11 +27,17 @@ ViewTransform make_view_transform(ViewRays const& source, ViewRays const& displa
     return {to_display * (motion.linear * directions(source)), to_display * (origin - glm::dvec3(display.origin))};
 }
 
+glm::dmat3 make_stretch(Layer const& layer, ViewRays const& display, glm::dvec2 middle, glm::dvec3 dx, glm::dvec3 dy) {
+    glm::dmat3 const to_display =
+        (layer.at + layer.dx * middle.x + layer.dy * middle.y) * glm::inverse(directions(display));
+    return {to_display * dx, to_display * dy, to_display * (-middle.x * dx - middle.y * dy)};
+}
+
 std::optional<PlaneTransform> make_plane_transform(ViewTransform const& view, Layer const& layer,
-                                                   glm::dvec2 tile_corner) {
+                                                   glm::dvec2 tile_corner, glm::dmat3 const& stretch) {
     glm::dvec3 const plane(layer.dx, layer.dy, layer.at); // inverse depth of (x, y, 1)
     PlaneTransform out;
-    out.to_display = view.far;
+    out.to_display = view.far + stretch;
     out.to_display[2] += tile_corner.x * view.far[0] + tile_corner.y * view.far[1];
     for (int column = 0; column < 3; ++column) {
         out.to_display[column] += plane[column] * view.parallax;

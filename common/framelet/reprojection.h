@@ -48,9 +48,15 @@ struct PlaneTransform {
     glm::dvec3 inverse_depth; ///< in the display, 1 / metres: its dot product with (x, y, 1), only where 1 / z > 0
 };
 
-/// The maps of a layer's plane; none where the display camera sees the plane edge-on or from behind.
+/// What the drift of a layer changes from pixel to pixel, as a part of `PlaneTransform::to_display`: it is taken to be
+/// as far away everywhere as in the layer's middle. `dx`, `dy`: metres a pixel, by the time that is shown; `middle`:
+/// pixels from the tile's corner.
+glm::dmat3 make_stretch(Layer const& layer, ViewRays const& display, glm::dvec2 middle, glm::dvec3 dx, glm::dvec3 dy);
+
+/// The maps of a layer's plane; none where the display camera sees the plane edge-on or from behind. `stretch`: as
+/// `make_stretch` has it.
 std::optional<PlaneTransform> make_plane_transform(ViewTransform const& view, Layer const& layer,
-                                                   glm::dvec2 tile_corner);
+                                                   glm::dvec2 tile_corner, glm::dmat3 const& stretch = glm::dmat3(0));
 
 /// The pixel box of the display picture that holds every pixel at whose centre a source rectangle [low, high] shows in
 /// front of the display camera, clipped to the viewport; empty where there is none.

@@ -51,25 +51,44 @@ inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
-/// True when samples of this body and velocity drift: they are of a shadow that goes over a surface, or of what
-/// deforms.
-inline bool drifts(BodyNumber body, Vec3 const& velocity) {
-    return body == static_body && velocity != Vec3(0);
+/// Pixels by which samples may have gone otherwise than they were seen to go, at which they go no farther: from then on
+/// they show where they were last known to go.
+inline constexpr float most_straying = 2;
+
+/// Seconds of scene time, before and after its rendering, for which a sample follows its drift: until it may be
+/// `most_straying` pixels off. `pixels_per_metre`: there, where it was rendered.
+inline float followed_seconds(float jerk, float pixels_per_metre) {
+    float const rate = jerk * pixels_per_metre;
+    return rate > 0 ? std::cbrt(6 * most_straying / rate) : INFINITY;
 }
 
-/// Seconds of scene time for which what drifts is taken to go on as it was seen to go.
+/// Pixels by which a sample may be off after so many seconds, of either sign, since its drift was seen.
+inline float straying(float jerk, float pixels_per_metre, float age) {
+    float const seconds = std::abs(age);
+    return jerk > 0 ? jerk * pixels_per_metre * (seconds * seconds * seconds / 6) : 0.0f;
+}
+
+/// True for samples of a shadow that goes over a surface: they drift on no body.
+template <class AnyDrift>
+bool is_shadow(BodyNumber body, AnyDrift const& drift) {
+    return body == static_body && drift.any();
+}
+
+/// Seconds of scene time for which a shadow is taken to go on as it was seen to go.
 inline constexpr float leading_seconds = 0.4f;
 
-/// True when samples of this body, velocity and age, where they lie on a layer, show before all that they come over,
+/// True when samples of this body, drift and age, where they lie on a layer, show before all that they come over,
 /// however good that is.
-inline bool leads(BodyNumber body, Vec3 const& velocity, float age) {
-    return drifts(body, velocity) && std::abs(age) < leading_seconds;
+template <class AnyDrift>
+bool leads(BodyNumber body, AnyDrift const& drift, float age) {
+    return is_shadow(body, drift) && std::abs(age) < leading_seconds;
 }
 
-/// True when what drifts may have gone elsewhere since it was seen: then it shows only where nothing else does, or
-/// scraps of old shadows would lie about wherever they are finer than the ground.
-inline bool is_adrift(BodyNumber body, Vec3 const& velocity, float age) {
-    return drifts(body, velocity) && !leads(body, velocity, age);
+/// True when a shadow may have gone elsewhere since it was seen: then it shows only where nothing else does, or scraps
+/// of old shadows would lie about wherever they are finer than the ground.
+template <class AnyDrift>
+bool is_adrift(BodyNumber body, AnyDrift const& drift, float age) {
+    return is_shadow(body, drift) && !leads(body, drift, age);
 }
 
 /// Width of a step of worn spacings, in bits of a float's mantissa: a quarter of each octave.

@@ -88,7 +88,7 @@ private:
 /// image plane, since the newest camera is never far from the one that is displayed, and the only framelet that covers
 /// a pixel is never dropped.
 ///
-/// At most 2.1 KB are held for each 4x4 pixels (121 MB at 1280x720), whatever the batches bring.
+/// At most 2.45 KB are held for each 4x4 pixels (141 MB at 1280x720), whatever the batches bring.
 /// What has changed is reported in blocks of 16x16 pixels, aligned to the picture's corner, and counted by tile.
 class FrameletCache {
 public:

@@ -9,8 +9,9 @@ namespace framelet {
 
 namespace {
 
+/// True for what is held by moments; what drifts for a short time only is not.
 bool moves(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {
-    return shape.moves() && !is_at_rest(shape, scene_time, motions);
+    return shape.moves() && !shape.is_brief && !is_at_rest(shape, scene_time, motions);
 }
 
 bool moves(Batch const& batch, BodyMotions const& motions) {
@@ -56,8 +57,8 @@ bool FrameletPool::has_moving() const {
     return false;
 }
 
-bool FrameletPool::is_recent(std::size_t slot) const {
-    return slot == base_ || slots_[slot].begun + recent_moments > moments_;
+SlotRole FrameletPool::role(std::size_t slot) const {
+    return {slot == base_ || slots_[slot].begun + recent_moments > moments_, slot == base_};
 }
 
 bool FrameletPool::is_tried(std::size_t slot) const {
@@ -101,7 +102,7 @@ void FrameletPool::evict_moving(SceneTime now, BodyMotions const& motions) {
     for (std::size_t i = 0; i < base.slot_count(); ++i) {
         CachedFramelet const* const framelet = base.at_slot(i);
         if (framelet != nullptr &&
-            (!framelet->shape.moves ||
+            (!framelet->shape.moves || framelet->shape.is_brief ||
              is_in_place(framelet->shape, base.views()[framelet->view].scene_time, now, motions))) {
             kept.push_back(framelet->tile);
         }

@@ -1,7 +1,7 @@
 // Holds the framelets of several moments, for a viewer that moves its samples. Each camera has a cache, its base, for
-// what stands or rests; what moves in front of a standing camera has a cache for each scene time. What is held stays
-// until something better has come, wherever it lies in the picture by then. In: batches in the order in which they were
-// sent. Out: caches, from all of which a picture is made.
+// what stands, rests or drifts briefly; what else moves in front of a standing camera has a cache for each scene time.
+// What is held stays until something better has come, wherever it lies in the picture by then. In: batches in the order
+// in which they were sent. Out: caches, from all of which a picture is made.
 #pragma once
 
 #include <cstdint>
@@ -13,6 +13,14 @@
 #include "common/held/framelet_cache.h"
 
 namespace framelet {
+
+/// What the framelets of a slot are to the picture.
+struct SlotRole {
+    bool is_recent = true; ///< its outliers show
+    bool is_base = true; ///< it is the newest camera's base, whose framelets newer ones replace in their places
+
+    bool operator==(SlotRole const&) const = default;
+};
 
 /// A moment's framelets keep their slot as long as they are held. When the slots are used up, the moment of which the
 /// last pictures showed least is evicted, but never the newest camera's base: what something covers for a while is
@@ -58,8 +66,8 @@ public:
     bool belongs_to_base(std::size_t slot) const { return slots_[slot].begun > slots_[base_].begun; }
     /// True when anything is held in such slots.
     bool has_moving() const;
-    /// True for a slot of one of the last `recent_moments` moments, and for the newest camera's base.
-    bool is_recent(std::size_t slot) const;
+    /// Outliers show of the last `recent_moments` moments, and of the newest camera's base.
+    SlotRole role(std::size_t slot) const;
     /// True when the slot's moment has been shown long enough to tell what of it is of no use. Never true of the base
     /// of the newest camera.
     bool is_tried(std::size_t slot) const;

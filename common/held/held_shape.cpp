@@ -163,7 +163,7 @@ void hold_boxes(PackedSample const* grid, HeldShape& held) {
 
 bool is_in_place(HeldShape const& held, SceneTime from, SceneTime to, BodyMotions const& motions) {
     auto const is_there = [&](auto const& one) {
-        return one.velocity == Vec3(0) && (one.body == static_body || motions.between(one.body, from, to) == Motion{});
+        return !one.drift.any() && (one.body == static_body || motions.between(one.body, from, to) == Motion{});
     };
     return std::all_of(held.layers.begin(), held.layers.begin() + held.layer_count,
                        [&](HeldLayer const& layer) { return is_there(layer.layer); }) &&
@@ -177,6 +177,7 @@ void hold(DisplayFramelet const& framelet, FrameletShape const* shape, int sampl
     held.layer_count = shape == nullptr ? 1 : shape->layer_count;
     held.side = static_cast<std::uint8_t>(framelet_side / samples_per_pixel);
     held.moves = shape != nullptr && shape->moves();
+    held.is_brief = shape != nullptr && shape->is_brief;
     held.decorrelation = shape == nullptr ? DecorrelationCode{0} : shape->decorrelation;
     held.layers.fill({});
     held.outliers.clear();

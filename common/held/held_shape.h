@@ -52,7 +52,8 @@ struct HeldShape {
     std::uint8_t layer_count = 0;
     /// Samples along a side of the moving grid: 16, or as many as the tile has pixels if it is finer than they are.
     std::uint8_t side = framelet_side;
-    bool moves = false; ///< something in it is on a body or has a velocity
+    bool moves = false; ///< something in it is on a body or drifts
+    bool is_brief = false; ///< as of `FrameletShape`
     DecorrelationCode decorrelation = 0;
     std::vector<HeldOutlier> outliers; ///< in the order of the moving grid's rows
     std::array<PackedSample, framelet_samples / 4> reduced; ///< the moving grid in rows where `side` is not 16

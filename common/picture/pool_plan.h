@@ -17,7 +17,7 @@ public:
     PoolPlan(FrameletPool const& pool, Camera const& camera, SceneTime scene_time, BodyMotions const& motions)
         : viewport_(pool.plane().viewport()), plans_(pool.slot_count()) {
         for (std::size_t i = 0; i < plans_.size(); ++i) {
-            plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
+            plans_[i].make(pool.slot(i), i, pool.role(i), camera, scene_time, motions);
         }
     }
 

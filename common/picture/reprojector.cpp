@@ -223,7 +223,7 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
     }
     noted_slots_ = 0;
     for (std::size_t i = 0; i < pool.slot_count(); ++i) {
-        plans_[i].make(pool.slot(i), i, pool.is_recent(i), camera, scene_time, motions);
+        plans_[i].make(pool.slot(i), i, pool.role(i), camera, scene_time, motions);
         noted_slots_ |= pool.is_tried(i) ? 1u << i : 0u;
     }
     columns_ = plans_[0].columns();

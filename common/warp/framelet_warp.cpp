@@ -61,8 +61,11 @@ std::uint64_t signature_of(WarpPatch const& patch, std::uint64_t content, std::s
 
 bool is_usable(Layer const& layer) {
     auto const is_small = [](float value) { return std::abs(value) < static_cast<float>(largest); };
+    auto const is_short = [&](Vec3 const& v) { return is_small(v.x) && is_small(v.y) && is_small(v.z); };
+    LayerDrift const& drift = layer.drift;
     return is_small(layer.at) && is_small(layer.dx) && is_small(layer.dy) && is_small(layer.error) &&
-           is_small(layer.velocity.x) && is_small(layer.velocity.y) && is_small(layer.velocity.z);
+           is_short(drift.corner.velocity) && is_short(drift.velocity_dx) && is_short(drift.velocity_dy) &&
+           is_short(drift.corner.acceleration) && is_short(drift.acceleration_dx) && is_short(drift.acceleration_dy);
 }
 
 bool is_usable(WarpPatch const& patch) {
@@ -77,10 +80,11 @@ bool is_usable(WarpPatch const& patch) {
 
 } // namespace
 
-FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
-                           BodyMotions const& motions)
-    : cache_(cache), slot_(slot), display_(display), display_rays_(make_view_rays(display, cache.plane().viewport())),
-      time_(time), last_jump_(motions.last_jump(time)), motions_(motions) {}
+FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, SlotRole role, Camera const& display,
+                           SceneTime time, BodyMotions const& motions)
+    : cache_(cache), slot_(slot), role_(role), display_(display),
+      display_rays_(make_view_rays(display, cache.plane().viewport())), time_(time),
+      last_jump_(motions.last_jump(time)), motions_(motions) {}
 
 void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
                        std::vector<Splat>& splats) {
@@ -146,7 +150,7 @@ void FrameletWarp::add_layer(std::uint32_t view, HeldLayer const& layer, Decorre
     if (layer.last_column < layer.first_column || !is_usable(layer.layer)) {
         return;
     }
-    turn_to(view, layer.layer.body, layer.layer.velocity);
+    turn_to(view, layer);
     if ((is_still_ ? project_still(layer, patch) : project(layer, patch)) && is_usable(patch)) {
         rate(view, decorrelation, layer.layer, patch);
         patch.signature = signature_of(patch, content, {});
@@ -191,14 +195,19 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
     // Pixels by which its samples may be shown off their positions: their inverse depths are not quite the plane's.
     glm::dvec2 const middle = 0.5 * glm::dvec2(patch.box.left + patch.box.right, patch.box.top + patch.box.bottom);
     float const misplaced = is_still_ ? 0 : layer.error * z * parallax_at(middle);
-    patch.worn = worn(view, decorrelation, spacing, misplaced, is_still_);
     auto const age = static_cast<float>(time_ - cache_.views()[view].scene_time);
-    if (drifts(layer.body, layer.velocity)) {
+    float const inverse_depth = patch.inverse_depth + x * patch.inverse_depth_dx + y * patch.inverse_depth_dy;
+    float const strayed =
+        straying(layer.drift.corner.jerk, inverse_depth / glm::length(display_rays_.direction_dx), age);
+    patch.worn = worn(view, decorrelation, spacing, misplaced + strayed, is_still_);
+    if (is_shadow(layer.body, layer.drift)) {
         patch.group = drifting_group(patch.group);
-        patch.worn *= leads(layer.body, layer.velocity, age) ? ahead_of_all : 1.0f;
+        patch.worn *= leads(layer.body, layer.drift, age) ? ahead_of_all : 1.0f;
     }
-    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.velocity, age);
-    if (is_astray(spacing, misplaced)) {
+    // Nothing newer replaces it in its place: it may be anywhere.
+    bool const is_lost = is_lost_ && !role_.is_base;
+    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.drift, age) && !is_lost;
+    if (is_astray(spacing, misplaced) || is_lost) {
         patch.tolerance = static_cast<float>(largest); // it never counts as the nearer one
     }
 }
@@ -211,7 +220,7 @@ float FrameletWarp::parallax_at(glm::dvec2 pixel) const {
 double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merged) {
     HeldLayer const& held = merged.layer;
     Layer const& layer = held.layer;
-    turn_to(merged.view, layer.body, layer.velocity);
+    turn_to(merged.view, held);
     if (is_still_) {
         return 0;
     }
@@ -230,20 +239,62 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     return within > 0 ? within : 0;
 }
 
-void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity) {
-    if (has_transform_ && view == view_ && body == body_ && velocity == velocity_) {
+/// Seconds of scene time for which what is of this jerk and inverse depth has followed its drift, of either sign; notes
+/// where it would go on for longer.
+float FrameletWarp::followed_age(std::uint32_t view, float jerk, double inverse_depth) {
+    HeldView const& from = cache_.views()[view];
+    auto const age = static_cast<float>(time_ - from.scene_time);
+    is_lost_ = false;
+    if (!(jerk > 0)) {
+        return age;
+    }
+    ViewRays const rays = make_view_rays(from.camera, cache_.plane().viewport());
+    float const seconds = followed_seconds(jerk, static_cast<float>(inverse_depth) / glm::length(rays.direction_dx));
+    is_lost_ = std::abs(age) > seconds;
+    return std::clamp(age, -seconds, seconds);
+}
+
+glm::dvec2 FrameletWarp::middle(HeldLayer const& layer) const {
+    return 0.5 * spacing_ *
+           glm::dvec2(layer.first_column + layer.last_column + 1, layer.first_row + layer.last_row + 1);
+}
+
+void FrameletWarp::turn_to(std::uint32_t view, HeldLayer const& held) {
+    Layer const& layer = held.layer;
+    stretch_ = glm::dmat3(0);
+    is_lost_ = false;
+    if (!layer.drift.any()) {
+        turn_to(view, layer.body, glm::dvec3(0));
         return;
     }
-    if (body != static_body || velocity != Vec3(0)) {
+    lasts_ = {time_, -INFINITY};
+    glm::dvec2 const at = middle(held);
+    double const inverse_depth = layer.at + layer.dx * at.x + layer.dy * at.y;
+    float const age = followed_age(view, layer.drift.corner.jerk, inverse_depth);
+    turn_to(view, layer.body, glm::dvec3(layer.drift.at(Vec2(at)).after(age)));
+    auto const after = [&](Vec3 const& velocity, Vec3 const& acceleration) {
+        return glm::dvec3(Drift{velocity, acceleration}.after(age));
+    };
+    if (!is_still_) {
+        stretch_ = make_stretch(layer, display_rays_, at, after(layer.drift.velocity_dx, layer.drift.acceleration_dx),
+                                after(layer.drift.velocity_dy, layer.drift.acceleration_dy));
+    }
+}
+
+/// `drift`: metres in the world, by the time that is shown.
+void FrameletWarp::turn_to(std::uint32_t view, BodyNumber body, glm::dvec3 const& drift) {
+    if (has_transform_ && view == view_ && body == body_ && drift == drift_) {
+        return;
+    }
+    if (body != static_body) {
         lasts_ = {time_, -INFINITY};
     }
     has_transform_ = true;
     view_ = view;
     body_ = body;
-    velocity_ = velocity;
+    drift_ = drift;
     HeldView const& from = cache_.views()[view];
     Motion const motion = body == static_body ? Motion{} : motions_.between(body, from.scene_time, time_);
-    glm::dvec3 const drift = (time_ - from.scene_time) * glm::dvec3(velocity);
     is_still_ = !is_reprojectable(from.camera) || !is_reprojectable(display_) ||
                 (from.camera == display_ && motion == Motion{} && drift == glm::dvec3(0));
     transform_ = is_still_ ? ViewTransform{}
@@ -288,7 +339,7 @@ bool FrameletWarp::project_still(HeldLayer const& held, WarpPatch& patch) const 
 }
 
 bool FrameletWarp::project(HeldLayer const& held, WarpPatch& patch) const {
-    auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top});
+    auto const plane = make_plane_transform(transform_, held.layer, {rect_.left, rect_.top}, stretch_);
     if (!plane) {
         return false;
     }
@@ -326,9 +377,17 @@ void FrameletWarp::add_splats(CachedFramelet const& framelet, WarpPatch& patch, 
     double left = viewport.width, top = viewport.height, right = 0, bottom = 0;
     bool still = true;
     for (HeldOutlier const& outlier : framelet.shape.outliers) {
-        turn_to(framelet.view, outlier.sample.body, outlier.sample.velocity);
-        still = still && is_still_;
         double const w = std::max(static_cast<double>(outlier.sample.inverse_depth), 0.0);
+        Drift const& drift = outlier.sample.drift;
+        if (drift.any()) {
+            lasts_ = {time_, -INFINITY};
+        }
+        glm::dvec3 const drifted(drift.any() ? drift.after(followed_age(framelet.view, drift.jerk, w)) : Vec3(0));
+        if (drift.any() && is_lost_ && !role_.is_base) {
+            continue;
+        }
+        turn_to(framelet.view, outlier.sample.body, drifted);
+        still = still && is_still_;
         int const column = outlier.index % patch.side, row = outlier.index / patch.side;
         glm::dvec3 const at =
             transform_.map(rect_.left + (column + 0.5) * spacing_, rect_.top + (row + 0.5) * spacing_, w);

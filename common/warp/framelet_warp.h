@@ -8,6 +8,7 @@
 
 #include "common/framelet/body_motion.h"
 #include "common/framelet/reprojection.h"
+#include "common/held/framelet_pool.h"
 #include "common/warp/merging/merged_square.h"
 #include "common/warp/warp_patch.h"
 
@@ -25,7 +26,7 @@ struct TimeSpan {
 class FrameletWarp {
 public:
     /// `slot`: that of the cache in its pool.
-    FrameletWarp(FrameletCache const& cache, std::size_t slot, Camera const& display, SceneTime time,
+    FrameletWarp(FrameletCache const& cache, std::size_t slot, SlotRole role, Camera const& display, SceneTime time,
                  BodyMotions const& motions);
 
     /// Adds the patches and splats of a framelet's `parts`. Bit i of `parts`: layer i; bit `FrameletShape::outlier`:
@@ -43,7 +44,10 @@ public:
     TimeSpan lasts() const { return lasts_; }
 
 private:
-    void turn_to(std::uint32_t view, BodyNumber body, Vec3 const& velocity);
+    void turn_to(std::uint32_t view, BodyNumber body, glm::dvec3 const& drift);
+    float followed_age(std::uint32_t view, float jerk, double inverse_depth);
+    glm::dvec2 middle(HeldLayer const& layer) const;
+    void turn_to(std::uint32_t view, HeldLayer const& layer);
     glm::dvec2 low(HeldLayer const& layer) const;
     glm::dvec2 high(HeldLayer const& layer) const;
     void add_layer(std::uint32_t view, HeldLayer const& layer, DecorrelationCode decorrelation, std::uint64_t content,
@@ -59,6 +63,7 @@ private:
 
     FrameletCache const& cache_;
     std::size_t slot_;
+    SlotRole role_;
     Camera const& display_;
     ViewRays display_rays_;
     SceneTime time_;
@@ -73,9 +78,11 @@ private:
     bool has_transform_ = false;
     std::uint32_t view_ = 0;
     BodyNumber body_ = static_body;
-    Vec3 velocity_{0};
+    glm::dvec3 drift_{0};
     bool is_still_ = false;
     ViewTransform transform_;
+    glm::dmat3 stretch_{0}; ///< of the layer at hand
+    bool is_lost_ = false; ///< the layer or outlier at hand has drifted for longer than is known
     double parallax_ = 0; ///< the most anywhere in the picture: pixels for each 1 / metre at depth 1
     double lens_ratio_ = 1;
 };

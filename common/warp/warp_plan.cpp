@@ -89,14 +89,14 @@ void WarpPlan::Square::give_back_room() {
     shows = std::vector<std::uint8_t>();
 }
 
-void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
+void WarpPlan::make(FrameletCache const& cache, std::size_t slot, SlotRole role, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_squares(cache);
     SceneTime const last_jump = motions.last_jump(display_time);
-    bool const is_new = is_limited_ || outliers != outliers_ || !(display == display_) || last_jump != last_jump_;
+    bool const is_new = is_limited_ || role != role_ || !(display == display_) || last_jump != last_jump_;
     last_jump_ = last_jump;
     display_ = display;
-    outliers_ = outliers;
+    role_ = role;
     replanned_.clear();
     for (std::uint32_t i = 0; i < known_.size(); ++i) {
         Known& known = known_[i];
@@ -112,8 +112,8 @@ void WarpPlan::make(FrameletCache const& cache, std::size_t slot, bool outliers,
         std::uint32_t const index = replanned_[i];
         Square& square = squares_[index];
         square.merged.update(cache, square.tile, square.depth, mergings_->local());
-        FrameletWarp warp(cache, slot, display, display_time, motions);
-        plan(square, outliers, warp);
+        FrameletWarp warp(cache, slot, role, display, display_time, motions);
+        plan(square, role.is_recent, warp);
         square.note_number(index);
         known_[index].lasts = warp.lasts();
         known_[index].is_empty = square.patches.empty();

@@ -41,10 +41,9 @@ public:
     WarpPlan(WarpPlan&&) noexcept;
     WarpPlan& operator=(WarpPlan&&) noexcept;
 
-    /// Replaces the plan; `cache` and `slot` are always the same ones. `outliers`: whether these are planned too.
-    /// Squares of which all stays as it was planned last are kept. Runs in parallel; allocates only where more is held
-    /// than ever before.
-    void make(FrameletCache const& cache, std::size_t slot, bool outliers, Camera const& display,
+    /// Replaces the plan; `cache` and `slot` are always the same ones. Squares of which all stays as it was planned
+    /// last are kept. Runs in parallel; allocates only where more is held than ever before.
+    void make(FrameletCache const& cache, std::size_t slot, SlotRole role, Camera const& display,
               SceneTime display_time, BodyMotions const& motions);
 
     int columns() const { return columns_; }
@@ -125,7 +124,7 @@ private:
     struct Mergings;
     std::unique_ptr<Mergings> mergings_; ///< scratch
     Camera display_; ///< the camera that the plan is for
-    bool outliers_ = false; ///< whether outliers are in it
+    SlotRole role_;
     SceneTime last_jump_ = -INFINITY; ///< the scene's last jump before what is displayed
     bool is_limited_ = false; ///< there is no room for all patches
     std::vector<std::uint32_t> first_entry_; ///< index of each block's first entry; one more at the end

@@ -37,7 +37,7 @@ namespace coding {
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can read it
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a QP
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches
-inline constexpr std::uint32_t shapes_and_tracks = 32;
+inline constexpr std::uint32_t shapes_and_tracks = 64;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 

@@ -16,7 +16,7 @@ void move_geometry(Framelet& from, Framelet& to) {
     to.tile = from.tile;
     to.depth = from.depth;
     to.body.swap(from.body);
-    to.velocity.swap(from.velocity);
+    to.drift.swap(from.drift);
     to.reflects = from.reflects;
     to.is_supersampled = false;
 }
@@ -65,8 +65,8 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
     if (!child.body.empty()) {
         geometry.body.resize(framelet_samples, static_body);
     }
-    if (!child.velocity.empty()) {
-        geometry.velocity.resize(framelet_samples, Vec3(0));
+    if (!child.drift.empty()) {
+        geometry.drift.resize(framelet_samples);
     }
     std::size_t const first = (child.tile.code % four_rays) * quarter;
     for (std::size_t i = 0; i < quarter; ++i) {
@@ -91,8 +91,8 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
         if (!child.body.empty()) {
             geometry.body[to] = child.body[majority.ray];
         }
-        if (!child.velocity.empty()) {
-            geometry.velocity[to] = child.velocity[majority.ray];
+        if (!child.drift.empty()) {
+            geometry.drift[to] = child.drift[majority.ray];
         }
     }
 }
@@ -109,7 +109,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
     }
     geometry.tile = display.tile = tile;
     geometry.body.clear();
-    geometry.velocity.clear();
+    geometry.drift.clear();
     geometry.reflects.reset();
     geometry.is_supersampled = true;
     std::uint32_t segments = 0;

@@ -38,7 +38,7 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
     std::uint32_t segments = 0;
     out.tile = tile;
     out.body.clear();
-    out.velocity.clear();
+    out.drift.clear();
     out.reflects.reset();
     for (int first = 0; first < framelet_samples; first += lanes) {
         auto const position = [&](int i) {

@@ -147,7 +147,10 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
     double const seconds = moment_seconds(samples_per_second(turn) / pixels);
     bool const jumps = switches_ahead(turn, scene, awaited_seconds + seconds).any;
-    return camera_moves && !jumps ? seconds : least_moment_seconds;
+    if (camera_moves) {
+        return jumps ? least_moment_seconds : seconds;
+    }
+    return moments_.standing_seconds();
 }
 
 /// Seconds by which a moment's camera is ahead of the moment: what the first batch of the next one takes until it is
@@ -245,7 +248,11 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
         if (planned_ != nullptr) {
             return Step::finish;
         }
-        return wanted.moment ? Step::wait : Step::nothing; // at rest there will be more to do
+        if (wanted.moment) {
+            moments_.note_complete(turn.now);
+            return Step::wait;
+        }
+        return Step::nothing; // at rest there will be more to do
     }
     set_planned(work);
     work.figures.is_new_cycle = order.plan.is_new_cycle;

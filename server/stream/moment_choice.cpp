@@ -12,6 +12,22 @@ double moment_seconds(double samples_per_pixel_and_second) {
     return std::ldexp(least_moment_seconds, static_cast<int>(std::lround(std::log2(wanted / least_moment_seconds))));
 }
 
+void MomentChoice::begin(HeldMoment const& moment) {
+    if (held_ && completed_ && *completed_ - held_->begun < 0.5 * held_->seconds) {
+        standing_seconds_ = std::max(0.5 * standing_seconds_, least_standing_seconds);
+    } else if (!completed_) {
+        standing_seconds_ = least_moment_seconds;
+    }
+    held_ = moment;
+    completed_.reset();
+}
+
+void MomentChoice::note_complete(double now) {
+    if (!completed_) {
+        completed_ = now;
+    }
+}
+
 bool MomentChoice::goes_on(ViewState const& present, double now) const {
     if (!held_) {
         return false;

@@ -17,6 +17,9 @@ inline constexpr double least_moment_seconds = 0.1, most_moment_seconds = 0.4;
 /// the least length and its doubles, so that viewers who get different shares change together all the same.
 double moment_seconds(double samples_per_pixel_and_second);
 
+/// How long a moment lasts at least before a camera that stands, seconds, where there is time for so many.
+inline constexpr double least_standing_seconds = 0.05;
+
 /// Seconds after which a picture that has stayed as it is counts as at rest: longer than a slow display's frame.
 inline constexpr double rest_seconds = 0.05;
 
@@ -27,7 +30,11 @@ public:
     /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
     /// for a viewer that moves nothing. `now`: seconds, steady.
     bool observe(ViewState const& present, double now, bool viewer_moves_samples);
-    void begin(HeldMoment const& moment) { held_ = moment; }
+    void begin(HeldMoment const& moment);
+    /// Notes that nothing of the moment that is held is worth rendering any more.
+    void note_complete(double now);
+    /// How long a moment is to last before a camera that stands, seconds: short enough to use the time that there is.
+    double standing_seconds() const { return standing_seconds_; }
     /// The moment to render; nothing where the present is.
     std::optional<HeldMoment> const& held() const { return held_; }
     /// Ends the moment that is held, so that the next begins anew, as after the scene's clock was set.
@@ -39,6 +46,8 @@ private:
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
     double changed_ = 0; ///< when `last_` was last another one, seconds
+    std::optional<double> completed_; ///< when the moment that is held was complete, seconds
+    double standing_seconds_ = least_moment_seconds;
 };
 
 } // namespace framelet

@@ -166,12 +166,12 @@ TEST(BodyMotion, WhatDeformsOrIsOnABodyThatMovesIsNotAtRest) {
     EXPECT_TRUE(is_at_rest(shape, 0, motions));
     shape.layer_count = 1;
     shape.layers[0].body = 7;
-    shape.layers[1].velocity.x = 1; // not one of its layers
+    shape.layers[1].drift.corner.velocity.x = 1; // not one of its layers
     EXPECT_TRUE(is_at_rest(shape, 0.3, motions));
     EXPECT_FALSE(is_at_rest(shape, 0.3, of_no_rest));
     EXPECT_FALSE(is_at_rest(shape, 39 * key_seconds - 0.9 * resting_seconds, motions)) << "it soon will move";
     EXPECT_FALSE(is_at_rest(shape, 0.8, motions));
-    shape.outliers.push_back({1, static_body, Vec3(0, 1, 0)});
+    shape.outliers.push_back({1, static_body, {Vec3(0, 1, 0)}});
     EXPECT_FALSE(is_at_rest(shape, 0.3, motions));
 }
 

@@ -28,38 +28,53 @@ void read(ShapeModel& model, std::span<std::uint8_t const> bytes, std::span<Fram
 }
 
 /// True where a shape is what a reader makes of another one: its planes are quantised, the rest but for depths of
-/// samples and velocities is the same, and these are within half a unit.
+/// samples and drifts is the same, and these are within half a unit.
 bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_bits) {
     if (got.layer_count != sent.layer_count || got.decorrelation != sent.decorrelation ||
         got.layer_of != sent.layer_of || got.outliers.size() != sent.outliers.size()) {
         return false;
     }
-    float deepest = 0, fastest = 0;
-    auto const note_velocity = [&](Vec3 const& velocity) {
+    float deepest = 0, fastest = 0, quickest = 0;
+    float const side = std::ldexp(1.0f, side_bits);
+    auto const note = [&](Drift const& drift, float scale) {
         for (int axis = 0; axis < 3; ++axis) {
-            fastest = std::max(fastest, std::abs(velocity[axis]));
+            fastest = std::max(fastest, scale * std::abs(drift.velocity[axis]));
+            quickest = std::max(quickest, scale * std::abs(drift.acceleration[axis]));
         }
     };
     for (std::size_t l = 0; l < sent.layer_count; ++l) {
-        note_velocity(sent.layers[l].velocity);
+        LayerDrift const& drift = sent.layers[l].drift;
+        note(drift.corner, 1);
+        note({drift.velocity_dx, drift.acceleration_dx}, side);
+        note({drift.velocity_dy, drift.acceleration_dy}, side);
     }
     for (Outlier const& sample : sent.outliers) {
-        note_velocity(sample.velocity);
+        note(sample.drift, 1);
         deepest = std::max(deepest, sample.inverse_depth);
     }
-    auto const is_near = [&](Vec3 const& a, Vec3 const& b) {
-        double const half_unit = unit_of(unit_above(static_cast<double>(fastest) / largest_velocity_code)) / 2;
-        bool near = true;
+    auto const is_near = [&](Drift const& a, Drift const& b, float scale) {
+        auto const half_unit = [&](float most) {
+            return unit_of(unit_above(static_cast<double>(most) / largest_drift_code)) / 2 / static_cast<double>(scale);
+        };
+        bool near = a.jerk == jerk_of(quantise_jerk(b.jerk));
         for (int axis = 0; axis < 3; ++axis) {
-            near = near && std::abs(static_cast<double>(a[axis]) - static_cast<double>(b[axis])) <= half_unit;
+            auto const off = [&](Vec3 const& one, Vec3 const& other) {
+                return std::abs(static_cast<double>(one[axis]) - static_cast<double>(other[axis]));
+            };
+            near = near && off(a.velocity, b.velocity) <= half_unit(fastest) &&
+                   off(a.acceleration, b.acceleration) <= half_unit(quickest);
         }
         return near;
     };
     for (std::size_t l = 0; l < sent.layer_count; ++l) {
         Layer wanted = dequantise(quantise(sent.layers[l], side_bits), side_bits);
         wanted.body = sent.layers[l].body;
-        wanted.velocity = got.layers[l].velocity;
-        if (got.layers[l] != wanted || !is_near(got.layers[l].velocity, sent.layers[l].velocity)) {
+        LayerDrift const& drift = got.layers[l].drift;
+        LayerDrift const& whole = sent.layers[l].drift;
+        wanted.drift = drift;
+        if (got.layers[l] != wanted || !is_near(drift.corner, whole.corner, 1) ||
+            !is_near({drift.velocity_dx, drift.acceleration_dx}, {whole.velocity_dx, whole.acceleration_dx}, side) ||
+            !is_near({drift.velocity_dy, drift.acceleration_dy}, {whole.velocity_dy, whole.acceleration_dy}, side)) {
             return false;
         }
     }
@@ -67,7 +82,7 @@ bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_
     return std::equal(
         got.outliers.begin(), got.outliers.end(), sent.outliers.begin(), [&](Outlier const& a, Outlier const& b) {
             double const off = std::abs(static_cast<double>(a.inverse_depth) - static_cast<double>(b.inverse_depth));
-            return a.body == b.body && off <= half_unit && is_near(a.velocity, b.velocity);
+            return a.body == b.body && off <= half_unit && is_near(a.drift, b.drift, 1);
         });
 }
 

@@ -48,7 +48,7 @@ void add_shapes(Batch& batch) {
             shape.layer_of[k] = morton_x(k) < 1 + i % 15 ? 0 : 1;
         }
         shape.layer_of[i % framelet_samples] = FrameletShape::outlier;
-        shape.outliers.push_back({1, 1, Vec3(0)});
+        shape.outliers.push_back({1, 1, {}});
     }
     batch.tracks.push_back({1, 60, {BodyPose{}, BodyPose{{1, 0, 0}, {1, 0, 0, 0}, {1, 1, 1}}}});
 }

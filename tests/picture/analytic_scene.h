@@ -114,7 +114,7 @@ struct AnalyticScene {
                 Outlier outlier{static_cast<float>(hit.inverse_depth), static_body, Vec3(0)};
                 if (hit.quad >= 0) {
                     outlier.body = placed[static_cast<std::size_t>(hit.quad)].body;
-                    outlier.velocity = Vec3(placed[static_cast<std::size_t>(hit.quad)].velocity);
+                    outlier.drift.velocity = Vec3(placed[static_cast<std::size_t>(hit.quad)].velocity);
                 }
                 shape.outliers.push_back(outlier);
                 continue;
@@ -131,7 +131,7 @@ struct AnalyticScene {
                         static_cast<float>(plane_inverse_depth(quad, rays, rect.left, rect.top + 1) - at),
                         0,
                         quad.body,
-                        Vec3(quad.velocity)};
+                        {{Vec3(quad.velocity)}}};
                 }
             }
             shape.layer_of[i] = layer;

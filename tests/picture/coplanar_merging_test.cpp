@@ -172,7 +172,7 @@ TEST(CoplanarMerging, OnlyOfOneViewBodyAndVelocity) {
             bool const other = part % 2 == 1;
             layer.view = kind == 1 && other ? 7 : 0;
             layer.held.layer.body = kind == 2 && other ? 7 : static_body;
-            layer.held.layer.velocity = Vec3(kind == 3 && other ? 7.0f : 0.0f);
+            layer.held.layer.drift.corner.velocity = Vec3(kind == 3 && other ? 7.0f : 0.0f);
             layers.push_back(layer);
         }
         CoplanarMerging const merging = merging_of(layers);

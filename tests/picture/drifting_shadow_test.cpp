@@ -104,7 +104,7 @@ TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
 std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
     BodyMotions const motions;
     Camera const camera = front();
-    FrameletWarp warp(cache, 0, camera, time, motions);
+    FrameletWarp warp(cache, 0, {}, camera, time, motions);
     std::vector<Splat> splats;
     std::pair<int, int> out;
     for (std::size_t i = 0; i < cache.slot_count(); ++i) {
@@ -112,7 +112,7 @@ std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
         for (unsigned k = 0; framelet != nullptr && k < framelet->shape.layer_count; ++k) {
             std::vector<WarpPatch> patches;
             warp.add(*framelet, 1u << k, patches, splats);
-            bool const is_shadow = framelet->shape.layers[k].layer.velocity != Vec3(0);
+            bool const is_shadow = framelet->shape.layers[k].layer.drift.any();
             for (WarpPatch const& patch : patches) {
                 out.first += is_shadow && patch.hides ? 1 : 0;
                 out.second += is_shadow ? 1 : 0;

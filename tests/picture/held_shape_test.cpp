@@ -22,7 +22,7 @@ struct Mixed {
             shape.layer_of[i] = x < 8 ? 0 : 1;
             if (morton_y(i) == 5) {
                 shape.layer_of[i] = FrameletShape::outlier;
-                shape.outliers.push_back({static_cast<float>(x + 1), 3, Vec3(0)});
+                shape.outliers.push_back({static_cast<float>(x + 1), 3, {}});
             }
         }
     }

@@ -77,7 +77,7 @@ TEST(MergedSquare, WhatIsKeptIsWhatIsThere) {
         batch.view.number = random() % 16 == 0 ? 2 : 1;
         if (number > 100) { // what deforms, differently everywhere: more motions than a square numbers
             for (FrameletShape& shape : batch.shapes) {
-                shape.layers[0].velocity.x = static_cast<float>(random() % 10000);
+                shape.layers[0].drift.corner.velocity.x = static_cast<float>(random() % 10000);
             }
         }
         cache.insert(batch);

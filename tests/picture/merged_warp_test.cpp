@@ -18,7 +18,7 @@ constexpr unsigned all_parts = (2u << FrameletShape::outlier) - 1;
 /// Moves each framelet alone; patches are in the order of the plan.
 void alone(FrameletCache const& cache, Camera const& display, SceneTime time, BodyMotions const& motions,
            std::vector<WarpPatch>& patches, std::vector<Splat>& splats) {
-    FrameletWarp warp(cache, 0, display, time, motions);
+    FrameletWarp warp(cache, 0, {}, display, time, motions);
     for (std::size_t slot = 0; slot < cache.slot_count(); ++slot) {
         if (CachedFramelet const* const framelet = cache.at_slot(slot)) {
             warp.add(*framelet, all_parts, patches, splats);
@@ -86,7 +86,7 @@ TEST(MergedWarp, WhatIsMergedShowsAsEachFrameletAlone) {
                 cache.insert(batch);
             }
             WarpPlan plan;
-            plan.make(cache, 0, true, display, 0.3, scene.motions);
+            plan.make(cache, 0, {}, display, 0.3, scene.motions);
             std::vector<WarpPatch> each;
             std::vector<Splat> splats;
             alone(cache, display, 0.3, scene.motions, each, splats);
@@ -147,7 +147,7 @@ TEST(MergedWarp, PatchesHaveTheirSamplesInTheGridOfTheirSquare) {
     FrameletCache cache(plane);
     cache.insert(batch);
     WarpPlan plan;
-    plan.make(cache, 0, true, look_at(Vec3(1, 1.6f, 5), Vec3(0, 1, 0), Vec3(0, 1, 0), 0.8f), 0, {});
+    plan.make(cache, 0, {}, look_at(Vec3(1, 1.6f, 5), Vec3(0, 1, 0), Vec3(0, 1, 0), 0.8f), 0, {});
     int in_grid = 0, alone = 0, compared = 0;
     for (std::uint32_t square = 0; square < plan.square_count(); ++square) {
         MergedSquare const& samples = plan.square_grid(square);

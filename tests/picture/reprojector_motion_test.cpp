@@ -277,7 +277,8 @@ TEST(ReprojectorMotion, StrangeCamerasAndShapesGiveNumbers) {
             for (Layer& layer : shape.layers) {
                 layer.at += round % 2 == 0 ? 0 : normal(random);
                 layer.dx += round % 2 == 0 ? 0 : 0.1f * normal(random);
-                layer.velocity = Vec3(normal(random), 0, normal(random)) * std::pow(10.0f, 4 * normal(random));
+                layer.drift.corner.velocity =
+                    Vec3(normal(random), 0, normal(random)) * std::pow(10.0f, 4 * normal(random));
             }
         }
         FrameletPool pool(plane);

@@ -180,12 +180,16 @@ TEST(ReprojectorRest, NoShapeLeavesWhatIsNotANumber) {
             scene.batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels), round % 5 == 0);
         for (FrameletShape& shape : batch.shapes) {
             for (Layer& layer : shape.layers) {
-                std::array const fields{&layer.at,    &layer.dx,         &layer.dy,
-                                        &layer.error, &layer.velocity.x, &layer.velocity.y};
+                std::array const fields{&layer.at,
+                                        &layer.dx,
+                                        &layer.dy,
+                                        &layer.error,
+                                        &layer.drift.corner.velocity.x,
+                                        &layer.drift.velocity_dy.y};
                 *fields[random() % fields.size()] = any();
             }
             for (Outlier& outlier : shape.outliers) {
-                (random() % 2 == 0 ? outlier.inverse_depth : outlier.velocity.z) = any();
+                (random() % 2 == 0 ? outlier.inverse_depth : outlier.drift.velocity.z) = any();
             }
         }
         FrameletPool pool(plane);

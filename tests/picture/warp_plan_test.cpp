@@ -41,11 +41,11 @@ TEST(WarpPlan, HoldsBoundedlyManyPatchesAndTheNewestOnes) {
         PixelRect const rect = plane.tile_rect(tile);
         Vec3 const towards = rays.direction + rays.direction_dx * (static_cast<float>(rect.left) + 4) +
                              rays.direction_dy * (static_cast<float>(rect.top) + 4);
-        batch.shapes[0].layers[0].velocity = Vec3(0, 0, -0.02f) - 5.0f * towards;
+        batch.shapes[0].layers[0].drift.corner.velocity = Vec3(0, 0, -0.02f) - 5.0f * towards;
         cache.insert(batch);
     }
     WarpPlan plan;
-    plan.make(cache, 0, true, front(), 1, {});
+    plan.make(cache, 0, {}, front(), 1, {});
     auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
     ASSERT_GT(tiles.size(), 2 * WarpPlan::most_patches_per_block);
     EXPECT_LE(entries_of(plan), WarpPlan::most_patches_per_block * blocks);
@@ -68,7 +68,7 @@ TEST(WarpPlan, FrameletsOfOnePlaneAreOnePatchForManyBlocks) {
         FrameletCache cache(plane);
         cache.insert(wall().batch(plane, 1, front(), 0, visible_tiles(plane, plane.pixel_depth() + levels)));
         WarpPlan plan;
-        plan.make(cache, 0, true, aside, 0, {});
+        plan.make(cache, 0, {}, aside, 0, {});
         EXPECT_GT(entries_of(plan), 0u);
         // A patch of a block alone reaches three blocks upright and two across.
         EXPECT_LT(entries_of(plan), static_cast<std::size_t>(4 * plan.columns() * plan.rows())) << levels;
@@ -89,7 +89,7 @@ TEST(WarpPlan, GivesBackTheRoomOfSquaresThatStayEmpty) {
     FrameletCache cache(plane);
     WarpPlan plan;
     int number = 0;
-    auto const show = [&] { plan.make(cache, 0, true, front(), number * 0.01, {}); };
+    auto const show = [&] { plan.make(cache, 0, {}, front(), number * 0.01, {}); };
     auto const hold = [&](int depth) {
         cache.insert(
             wall().batch(plane, static_cast<std::uint64_t>(++number), front(), 0, visible_tiles(plane, depth)));
@@ -138,7 +138,7 @@ TEST(WarpPlan, FlagsEachBlockOfWhichThePatchesAreOthers) {
     std::vector<std::vector<std::uint64_t>> before;
     int unflagged = 0;
     for (double const time : {0.0, 1.0, 1.0, 2.0, 1.5}) {
-        plan.make(cache, 0, true, front(), time / body_keys_per_second, scene.motions);
+        plan.make(cache, 0, {}, front(), time / body_keys_per_second, scene.motions);
         auto const blocks = static_cast<std::size_t>(plan.columns() * plan.rows());
         before.resize(blocks);
         std::vector<std::uint8_t> flags(blocks);

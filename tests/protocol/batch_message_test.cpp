@@ -42,7 +42,7 @@ Batch small_batch() {
         batch.shapes[1].layer_of[i] = morton_x(i) < 5 ? 0 : 1;
     }
     batch.shapes[1].layer_of[255] = FrameletShape::outlier;
-    batch.shapes[1].outliers.push_back({0.25f, 3, Vec3(0)});
+    batch.shapes[1].outliers.push_back({0.25f, 3, {}});
     batch.tracks.push_back({3, 90, {BodyPose{}, BodyPose{{1, 2, 3}, {0, 0, 1, 0}, {1, 1, 2}}}});
     return batch;
 }

@@ -80,7 +80,7 @@ TEST(Message, GoldenHello) {
 TEST(Message, GoldenHelloOfOneThatComesBack) {
     Hello const hello{6, {}, coding::all, {0x0102030405060708, 0x1112131415161718}, 9};
     Bytes const golden = from_hex("14000000 46524d4c 00000000 08000e00 07000800 08000000 00000001 14000000 00000e00"
-                                  "28000600 08000c00 10002000 0e000000 00000600 20000000 2b000000 08070605 04030201"
+                                  "28000600 08000c00 10002000 0e000000 00000600 20000000 4b000000 08070605 04030201"
                                   "18171615 14131211 09000000 00000000 00000000 00000000");
     EXPECT_EQ(to_hex(encode_message(hello)), to_hex(golden));
     EXPECT_TRUE(same(decode_message(golden), hello));

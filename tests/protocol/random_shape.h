@@ -20,8 +20,13 @@ public:
         return integer(0, 7) == 0 ? 0 : std::uniform_real_distribution<float>(lowest, highest)(generator_);
     }
     BodyNumber body() { return static_cast<BodyNumber>(integer(0, 2) == 0 ? integer(0, 65535) : integer(0, 2)); }
-    Vec3 velocity(bool deforms) {
-        return deforms ? Vec3(number(-90, 90), number(-9, 9), number(-0.5f, 0.5f)) : Vec3(0);
+    Vec3 vector(float scale) { return {scale * number(-90, 90), scale * number(-9, 9), scale * number(-0.5f, 0.5f)}; }
+    Drift drift(bool deforms) {
+        return deforms ? Drift{vector(1), vector(5), std::max(number(-10, 2000), 0.0f)} : Drift{};
+    }
+    LayerDrift layer_drift(bool deforms) {
+        return deforms ? LayerDrift{drift(true), vector(0.1f), vector(0.01f), vector(0.3f), vector(0.1f)}
+                       : LayerDrift{};
     }
 
     FrameletShape shape(bool deforms) {
@@ -35,7 +40,7 @@ public:
                                scale * number(-0.1f, 0.1f),
                                scale * number(0, 1e-3f),
                                body(),
-                               velocity(deforms)};
+                               layer_drift(deforms)};
         }
         bool const has_outliers = shape.layer_count == 0 || integer(0, 1) == 1;
         std::uint32_t const kinds = shape.layer_count + (has_outliers ? 1u : 0u);
@@ -44,7 +49,7 @@ public:
             kind = integer(0, 5) == 0 ? integer(0, kinds - 1) : kind;
             layer = kind < shape.layer_count ? static_cast<std::uint8_t>(kind) : FrameletShape::outlier;
             if (layer == FrameletShape::outlier) {
-                shape.outliers.push_back({scale * number(0, 1), body(), velocity(deforms)});
+                shape.outliers.push_back({scale * number(0, 1), body(), drift(deforms)});
             }
         }
         return shape;

@@ -63,18 +63,43 @@ float largest(Vec3 const& v) {
     return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
 }
 
-/// Expects that a shape has lost no more than it may. `fastest`: largest component of a velocity in its group.
-void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bits, float fastest) {
+/// The largest components of velocities and of accelerations on a shape of that side, whatever has them.
+struct FastestDrift {
+    float velocity = 0, acceleration = 0;
+
+    void add(Drift const& drift) {
+        velocity = std::max(velocity, largest(drift.velocity));
+        acceleration = std::max(acceleration, largest(drift.acceleration));
+    }
+    void add(LayerDrift const& drift, float side) {
+        add(drift.corner);
+        add({side * drift.velocity_dx, side * drift.acceleration_dx});
+        add({side * drift.velocity_dy, side * drift.acceleration_dy});
+    }
+};
+
+/// Expects a drift to be as it was, but for a share of the fastest; a jerk is no less than it was.
+void expect_close(Drift const& in, Drift const& out, FastestDrift const& fastest) {
+    EXPECT_LE(largest(in.velocity - out.velocity), fastest.velocity / 32767 + 1e-30f);
+    EXPECT_LE(largest(in.acceleration - out.acceleration), fastest.acceleration / 32767 + 1e-30f);
+    EXPECT_GE(out.jerk, 0.999f * in.jerk);
+    EXPECT_LE(out.jerk, std::max(1.0915f * in.jerk, 2e-5f));
+}
+
+/// Expects that a shape has lost no more than it may. `fastest`: of its group.
+void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bits, FastestDrift const& fastest) {
     ASSERT_EQ(in.layer_count, out.layer_count);
     ASSERT_EQ(in.layer_of, out.layer_of);
     ASSERT_EQ(in.outliers.size(), out.outliers.size());
     double const side = std::ldexp(1.0, side_bits);
-    float const velocity_off = fastest / 32767 + 1e-30f;
     for (std::size_t l = 0; l < in.layer_count; ++l) {
         Layer const& a = in.layers[l];
         Layer const& b = out.layers[l];
         EXPECT_EQ(a.body, b.body);
-        EXPECT_LE(largest(a.velocity - b.velocity), velocity_off);
+        expect_close(a.drift.corner, b.drift.corner, fastest);
+        Vec2 const across(0.7f * static_cast<float>(side), static_cast<float>(side));
+        FastestDrift const summed{3 * fastest.velocity, 3 * fastest.acceleration};
+        expect_close(a.drift.at(across), b.drift.at(across), summed);
         double const error = static_cast<double>(a.error);
         double const magnitude = std::abs(static_cast<double>(a.at)) +
                                  side * (std::abs(static_cast<double>(a.dx)) + std::abs(static_cast<double>(a.dy)));
@@ -96,7 +121,7 @@ void expect_close(FrameletShape const& in, FrameletShape const& out, int side_bi
         EXPECT_EQ(in.outliers[i].body, out.outliers[i].body);
         EXPECT_NEAR(in.outliers[i].inverse_depth, out.outliers[i].inverse_depth, nearest / 255 + 1e-37f);
         EXPECT_GE(out.outliers[i].inverse_depth, 0);
-        EXPECT_LE(largest(in.outliers[i].velocity - out.outliers[i].velocity), velocity_off);
+        expect_close(in.outliers[i].drift, out.outliers[i].drift, fastest);
     }
 }
 
@@ -107,15 +132,15 @@ TEST(ShapeCoding, RoundTripsLoseNoMoreThanStated) {
         bool const deforms = random.integer(0, 1) == 1;
         std::vector<FrameletShape> shapes(random.integer(0, 40));
         std::vector<std::uint8_t> side_bits;
-        float fastest = 0;
+        FastestDrift fastest;
         for (FrameletShape& shape : shapes) {
             shape = random.shape(deforms);
             side_bits.push_back(static_cast<std::uint8_t>(random.integer(2, 7)));
             for (std::size_t l = 0; l < shape.layer_count; ++l) {
-                fastest = std::max(fastest, largest(shape.layers[l].velocity));
+                fastest.add(shape.layers[l].drift, std::ldexp(1.0f, side_bits.back()));
             }
             for (Outlier const& sample : shape.outliers) {
-                fastest = std::max(fastest, largest(sample.velocity));
+                fastest.add(sample.drift);
             }
         }
         Plain const bytes = bytes_of(shapes, side_bits);
@@ -151,10 +176,12 @@ TEST(ShapeCoding, ExtremesStayFinite) {
         for (std::uint8_t const side_bits : {std::uint8_t{0}, std::uint8_t{7}}) {
             FrameletShape shape;
             shape.layer_count = 1;
-            shape.layers[0] = {scale, -scale, scale, scale, 65535, {scale, -scale, 0}};
+            Vec3 const fast(scale, -scale, 0);
+            shape.layers[0] = {scale, -scale, scale, scale, 65535, {{fast, fast, scale}, fast, fast, fast, fast}};
             FrameletShape const out = shapes_of(bytes_of({&shape, 1}, {&side_bits, 1}), {&side_bits, 1})[0];
             Layer const& layer = out.layers[0];
-            for (float const value : {layer.at, layer.dx, layer.dy, layer.error, layer.velocity.x}) {
+            for (float const value : {layer.at, layer.dx, layer.dy, layer.error, layer.drift.corner.velocity.x,
+                                      layer.drift.acceleration_dy.z}) {
                 EXPECT_TRUE(std::isfinite(value));
             }
             EXPECT_GE(layer.error, std::min(scale, 1e9f));
@@ -181,7 +208,7 @@ FrameletShape documented_shape() {
         std::uint32_t const x = morton_x(i);
         shape.layer_of[i] = x < 4 ? 0 : x < 15 ? 1 : FrameletShape::outlier;
         if (x == 15) {
-            shape.outliers.push_back({morton_y(i) == 0 ? 1.0f : 0.5f, 3, Vec3(0)});
+            shape.outliers.push_back({morton_y(i) == 0 ? 1.0f : 0.5f, 3, {}});
         }
     }
     return shape;

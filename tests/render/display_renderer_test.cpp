@@ -44,7 +44,7 @@ TEST(MergeChild, WhatIsTheSameEverywhereStaysThat) {
         DisplayFramelet display;
         merge_children([value](float, float) { return value; }, geometry, display);
         EXPECT_EQ(display, to_display(flat, 2)) << value;
-        EXPECT_TRUE(geometry.body.empty() && geometry.velocity.empty() && geometry.reflects.none());
+        EXPECT_TRUE(geometry.body.empty() && geometry.drift.empty() && geometry.reflects.none());
     }
 }
 
@@ -81,17 +81,17 @@ TEST(MergeChild, BodiesAndMotionComeAlong) {
         Framelet child = make_child(quadrant, [](float, float) { return 0.5f; });
         if (quadrant == 2) { // the others are static
             child.body.assign(framelet_samples, 7);
-            child.velocity.assign(framelet_samples, Vec3(1, 2, 3));
+            child.drift.assign(framelet_samples, Drift{Vec3(1, 2, 3)});
             child.reflects.set();
         }
         merge_child(child, 1, false, geometry, display);
     }
     ASSERT_EQ(geometry.body.size(), framelet_samples);
-    ASSERT_EQ(geometry.velocity.size(), framelet_samples);
+    ASSERT_EQ(geometry.drift.size(), framelet_samples);
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         bool const moves = i / 64 == 2;
         EXPECT_EQ(geometry.body[i], moves ? 7 : static_body) << i;
-        EXPECT_EQ(geometry.velocity[i], moves ? Vec3(1, 2, 3) : Vec3(0)) << i;
+        EXPECT_EQ(geometry.drift[i].velocity, moves ? Vec3(1, 2, 3) : Vec3(0)) << i;
         EXPECT_EQ(geometry.reflects[i], moves) << i;
     }
 }

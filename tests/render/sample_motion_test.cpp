@@ -43,7 +43,7 @@ TEST(SampleMotion, SamplesTellTheirBody) {
     animate(scene, node, AnimatedProperty::translation, {0, 0, 0, 0, 4, 0});
     Framelet const framelet = render(scene, 0.25);
     ASSERT_EQ(framelet.body.size(), std::size_t{framelet_samples});
-    EXPECT_TRUE(framelet.velocity.empty());
+    EXPECT_TRUE(framelet.drift.empty());
     EXPECT_TRUE(framelet.reflects.none());
     int moving = 0;
     float const pixel = 2 * std::tan(0.25f) / 32 * 10;
@@ -64,31 +64,49 @@ TEST(SampleMotion, NothingIsKeptWhereNothingMoves) {
     animate(scene, elsewhere, AnimatedProperty::translation, {0, 0, 0, 0, 4, 0});
     Framelet const framelet = render(scene, 0.25);
     EXPECT_TRUE(framelet.body.empty());
-    EXPECT_TRUE(framelet.velocity.empty());
+    EXPECT_TRUE(framelet.drift.empty());
 }
 
-TEST(SampleMotion, WhatShearsHasTheVelocityOfItsTransform) {
+/// Where a body takes a point of the world from one time to another.
+Vec3 carried(Scene const& scene, BodyNumber body, Vec3 const& point, SceneTime from, SceneTime to) {
+    SceneBodies const bodies = find_bodies(scene, clips);
+    BodyPose const before = body_pose(bodies, evaluate_pose(scene, clips, from), body);
+    BodyPose const after = body_pose(bodies, evaluate_pose(scene, clips, to), body);
+    Vec3 const in_body = (glm::conjugate(before.rotation) * (point - before.translation)) / before.scale;
+    return after.rotation * (after.scale * in_body) + after.translation;
+}
+
+TEST(SampleMotion, WhatShearsDriftsBesidesItsBodyAsItsTransformSays) {
     Scene scene;
     scene.materials = {matte(Vec3(0.5f))};
-    Index const node = add(scene, wall(-20, 40));
+    Index const node = add(scene, wall(-20, 40)) + 1;
     Node stretching;
     scene.nodes.insert(scene.nodes.begin(), stretching);
     scene.nodes[1].parent = 0;
-    // The node is stretched by one axis above something that is turned about the view axis: height grows by 0.5 a
-    // second.
+    // The node is stretched by one axis above something that is turned about the view axis.
     animate(scene, 0, AnimatedProperty::scale, {1, 1, 1, 1, 2, 1});
-    animate(scene, node + 1, AnimatedProperty::rotation, {0, 0, 0, 1, 0, 0, 0.01f, 0.99995f});
-    Framelet const framelet = render(scene, 0.0);
-    EXPECT_TRUE(framelet.body.empty());
-    ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
+    animate(scene, node, AnimatedProperty::rotation, {0, 0, 0, 1, 0, 0, 0.3f, 0.9539392f});
+    constexpr double time = 1;
+    Framelet const framelet = render(scene, time);
+    ASSERT_EQ(framelet.body.size(), std::size_t{framelet_samples});
+    ASSERT_EQ(framelet.drift.size(), std::size_t{framelet_samples});
+    auto const world = [&](SceneTime at) {
+        return evaluate_pose(scene, clips, at).world_from_node[static_cast<std::size_t>(node)];
+    };
     float const pixel = 2 * std::tan(0.25f) / 32 * 10;
+    float fastest = 0;
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
-        float const x = (static_cast<float>(morton_x(i)) + 0.5f - 16) * pixel;
-        float const y = (16 - 0.5f - static_cast<float>(morton_y(i))) * pixel;
-        EXPECT_NEAR(framelet.velocity[i].x, -0.01f * y, 1e-3f);
-        EXPECT_NEAR(framelet.velocity[i].y, 0.5f * y + 0.01f * x, 1e-3f);
-        EXPECT_NEAR(framelet.velocity[i].z, 0, 1e-4f);
+        Vec3 const point((static_cast<float>(morton_x(i)) + 0.5f - 16) * pixel,
+                         (16 - 0.5f - static_cast<float>(morton_y(i))) * pixel, 0);
+        Vec4 const local = glm::inverse(world(time)) * Vec4(point, 1);
+        for (float const seconds : {-motion_step, motion_step}) {
+            SceneTime const then = time + static_cast<double>(seconds);
+            Vec3 const shown = carried(scene, framelet.body[i], point, time, then) + framelet.drift[i].after(seconds);
+            EXPECT_LT(glm::distance(shown, Vec3(world(then) * local)), 1e-4f) << i;
+        }
+        fastest = std::max(fastest, glm::length(framelet.drift[i].velocity));
     }
+    EXPECT_GT(fastest, 0.01f) << "no body shears";
 }
 
 Scene morphing_scene() {
@@ -103,14 +121,17 @@ Scene morphing_scene() {
     return scene;
 }
 
-TEST(SampleMotion, WhatMorphsHasTheVelocityOfItsVertices) {
+TEST(SampleMotion, WhatMorphsDriftsAsItsVerticesGoBesidesItsBody) {
     Scene const scene = morphing_scene();
     for (double const time : {0.0, 1.0, 1.999, 2.5}) { // also where the clip is about to start over
         Framelet const framelet = render(scene, time);
-        ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
-        for (Vec3 const& velocity : framelet.velocity) {
-            EXPECT_NEAR(velocity.x, 0.5f, 1e-3f);
-            EXPECT_NEAR(velocity.z, -1.5f, 1e-3f);
+        ASSERT_EQ(framelet.drift.size(), std::size_t{framelet_samples});
+        EXPECT_EQ(framelet.body, std::vector<BodyNumber>(framelet_samples, 1)) << "which goes by 0.5 a second";
+        for (Drift const& drift : framelet.drift) {
+            EXPECT_NEAR(drift.velocity.x, 0, 1e-3f);
+            EXPECT_NEAR(drift.velocity.z, -1.5f, 1e-3f);
+            EXPECT_LT(glm::length(drift.acceleration), 0.05f);
+            EXPECT_GE(drift.jerk, least_jerk) << "nobody knows how it goes on";
         }
     }
 }
@@ -126,12 +147,66 @@ TEST(SampleMotion, SkinnedVerticesMoveWithTheirJoints) {
     scene.nodes[static_cast<std::size_t>(node)].skin = 0;
     animate(scene, 1, AnimatedProperty::translation, {0, 0, 0, 4, 0, -2});
     Framelet const framelet = render(scene, 0.5);
-    ASSERT_EQ(framelet.velocity.size(), std::size_t{framelet_samples});
-    EXPECT_NEAR(framelet.velocity[9].x, 2, 1e-3f);
-    EXPECT_NEAR(framelet.velocity[9].z, -1, 1e-3f);
+    EXPECT_EQ(framelet.body, std::vector<BodyNumber>(framelet_samples, 1));
+    ASSERT_EQ(framelet.drift.size(), std::size_t{framelet_samples});
+    EXPECT_EQ(framelet.drift[9].velocity, Vec3(0)) << "it goes with its joint";
 }
 
-TEST(SampleMotion, VelocityIsAFunctionOfTimeAlone) {
+/// Two joints, of which the second turns; the middle of the wall is of both.
+TEST(SampleMotion, EachTriangleGoesWithTheJointThatMovesItMost) {
+    Scene scene;
+    scene.materials = {matte(Vec3(0.5f))};
+    Primitive primitive = wall(-20, 40);
+    JointInfluence const first{{0, 1, 0, 0}, {0.9f, 0.1f, 0, 0}}, second{{1, 0, 0, 0}, {0.6f, 0.4f, 0, 0}};
+    primitive.influences = {first, second, second, first};
+    std::size_t counts[2] = {};
+    for (auto const& triangle : primitive.triangles) {
+        float weights[2] = {};
+        for (std::uint32_t const corner : triangle) {
+            JointInfluence const& influence = primitive.influences[corner];
+            weights[influence.joints[0]] += influence.weights[0];
+            weights[influence.joints[1]] += influence.weights[1];
+        }
+        std::size_t const joint = joint_of(primitive, triangle);
+        EXPECT_GT(weights[joint], weights[1 - joint]);
+        ++counts[joint];
+    }
+    EXPECT_EQ(counts[0] + counts[1], primitive.triangles.size());
+}
+
+TEST(SampleMotion, DriftsGoThroughTheTimesThatAreUsable) {
+    // x = 3 t + 5 t^2 + 2 t^3
+    auto const at = [](float t) { return Vec3(3 * t + 5 * t * t + 2 * t * t * t, 0, 0); };
+    Course off;
+    std::ranges::transform(motion_seconds, off.begin(), at);
+    Drift const drift = drift_of(off, {true, true, true, true}, 1e-7f);
+    for (float const seconds : {-motion_step, motion_step}) {
+        EXPECT_NEAR(drift.after(seconds).x, at(seconds).x, 1e-6f);
+    }
+    EXPECT_NEAR(drift.jerk, 12, 0.05f) << "the third derivative";
+    for (float const seconds : {-0.3f, -0.1f, 0.02f, 0.1f, 0.3f}) {
+        EXPECT_LE(std::abs(drift.after(seconds).x - at(seconds).x),
+                  1.001f * drift.jerk * std::pow(std::abs(seconds), 3.0f) / 6 + 1e-5f +
+                      0.2f * motion_step * motion_step * std::abs(seconds) * drift.jerk);
+    }
+    EXPECT_NEAR(drift_of(off, {false, true, true, true}, 1e-7f).velocity.x, 3, 0.05f) << "the scene has just jumped";
+    EXPECT_NEAR(drift_of(off, {true, false, false, false}, 1e-7f).velocity.x, 2.755f, 1e-3f) << "and is about to";
+    EXPECT_EQ(drift_of(off, {false, false, false, false}, 1e-7f), Drift{});
+    EXPECT_EQ(drift_of({}, {true, true, true, true}, 1e-7f), Drift{});
+    for (float const bad : {INFINITY, -INFINITY, NAN, 3e38f}) {
+        for (std::size_t k = 0; k < motion_times; ++k) {
+            Course broken = off;
+            broken[k].y = bad;
+            for (unsigned bits = 0; bits < 16; ++bits) {
+                Drift const found =
+                    drift_of(broken, {(bits & 1) != 0, (bits & 2) != 0, (bits & 4) != 0, (bits & 8) != 0}, 1e-7f);
+                EXPECT_TRUE(std::isfinite(found.velocity.y + found.acceleration.y + found.jerk));
+            }
+        }
+    }
+}
+
+TEST(SampleMotion, DriftIsAFunctionOfTimeAlone) {
     Scene scene = morphing_scene();
     scene.clips[0].channels[0].times = {1, 2}; // at rest for a second, then it moves
     RenderScene ready(scene, black());
@@ -143,11 +218,11 @@ TEST(SampleMotion, VelocityIsAFunctionOfTimeAlone) {
     };
     render_at(1.5, framelet);
     render_at(0.2, again);
-    EXPECT_NEAR(again.velocity[0].z, 0, 1e-4f);
-    EXPECT_NEAR(again.velocity[0].x, 0.5f, 1e-3f);
+    ASSERT_FALSE(again.drift.empty());
+    EXPECT_NEAR(again.drift[0].velocity.z, 0, 1e-4f);
     render_at(1.5, again);
-    EXPECT_EQ(framelet.velocity, again.velocity);
-    EXPECT_NEAR(again.velocity[0].z, -3, 1e-3f);
+    EXPECT_EQ(framelet.drift, again.drift);
+    EXPECT_NEAR(again.drift[0].velocity.z, -3, 1e-3f);
 }
 
 TEST(SampleMotion, MirrorsAreMarkedAndSeeThroughSamplesFollowTheHeaviestSurface) {

@@ -47,7 +47,7 @@ TEST(Mirror, WhatStandsHasNoHolesBetweenItsLayers) {
 void add_shadow(Mirror& mirror, int depth) {
     std::vector<Piece> shadow = render_pieces(plane, depth, wall, 1, 2);
     for (Piece& piece : shadow) {
-        piece.velocity = Vec3(0.01f, 0, 0);
+        piece.drift.velocity = Vec3(0.01f, 0, 0);
         piece.moves = true;
     }
     mirror.look(view_at(Vec3(0), 1), no_motions);
@@ -202,14 +202,14 @@ TEST(Mirror, AShadowIsRenewedBeforeTheViewerGivesItUp) {
     mirror.look(view_at(Vec3(0)), no_motions);
     auto pieces = render_pieces(plane, plane.pixel_depth(), wall);
     for (Piece& piece : pieces) {
-        piece.velocity = Vec3(1e-3f, 0, 0);
+        piece.drift.velocity = Vec3(1e-3f, 0, 0);
     }
     mirror.add(view_at(Vec3(0), 0).rays, no_motions, pieces);
     mirror.look(view_at(Vec3(0), 0.1), no_motions);
     EXPECT_TRUE(mirror.cell(5, 5).is_shown() && mirror.cell(5, 5).leads);
     mirror.look(view_at(Vec3(0), 0.25), no_motions);
     EXPECT_FALSE(mirror.cell(5, 5).is_shown());
-    EXPECT_TRUE(leads(static_body, pieces.front().velocity, 0.25f)) << "the viewer shows it still";
+    EXPECT_TRUE(leads(static_body, pieces.front().drift, 0.25f)) << "the viewer shows it still";
 }
 
 TEST(Mirror, WhatIsOlderThanAJumpShowsBehindWhatIsNot) {

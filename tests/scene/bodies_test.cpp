@@ -103,11 +103,12 @@ TEST(Bodies, WhatShearsOrDeformsFlows) {
     scene.nodes[static_cast<std::size_t>(skinned)].skin = 0;
     scene.nodes[static_cast<std::size_t>(stiff)].skin = 1;
     SceneBodies const bodies = find_bodies(scene, clips);
-    EXPECT_EQ(bodies.frames, (std::vector<Index>{none, pulsing}));
+    EXPECT_EQ(bodies.frames, (std::vector<Index>{none, turning, pulsing, turned_below, morphing}));
     std::vector<bool> const flows{false, true, false, false, true, true, true, false};
     EXPECT_EQ(bodies.flows, flows);
-    EXPECT_EQ(bodies.body_of_node[static_cast<std::size_t>(below)], 1);
-    EXPECT_EQ(bodies.body_of_node[static_cast<std::size_t>(turned_below)], static_body);
+    EXPECT_EQ(bodies.body_of_node[static_cast<std::size_t>(below)], 2);
+    EXPECT_EQ(bodies.body_of_node[static_cast<std::size_t>(turned_below)], 3) << "as far as a body can be";
+    EXPECT_EQ(bodies.body_of_node[static_cast<std::size_t>(skinned)], static_body) << "its joints carry it";
 }
 
 TEST(Bodies, TooManyFlow) {

@@ -203,7 +203,7 @@ MergedLayer MergedSquare::merge(CoplanarLayers const& coplanar) const {
                 SquareLayers::Motion const& motion = layers_->motion(rows.motion[index]);
                 out.view = motion.view;
                 layer.body = motion.body;
-                layer.velocity = motion.velocity;
+                layer.drift = motion.drift;
                 layer.error = rows.error[index]; // also where it is not a number
             }
             layer.error = std::max(layer.error, rows.error[index]);

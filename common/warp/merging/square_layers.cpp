@@ -19,7 +19,7 @@ bool SquareLayers::set(std::size_t index, std::uint32_t view, std::uint64_t batc
         if (held.last_column < held.first_column) {
             continue;
         }
-        std::int32_t const motion = number_of({view, held.layer.body, held.layer.velocity});
+        std::int32_t const motion = number_of({view, held.layer.body, held.layer.drift});
         if (motions_.size() > most_motions) {
             return false;
         }

@@ -24,11 +24,11 @@ public:
     static constexpr std::size_t index_of(std::size_t part) { return part % 4 * most_quads + part / 4; }
     static constexpr std::size_t part_at(std::size_t index) { return index % most_quads * 4 + index / most_quads; }
 
-    /// The body and velocity of a layer, and the view from which it was seen.
+    /// The body and drift of a layer, and the view from which it was seen.
     struct Motion {
         std::uint32_t view = 0;
         BodyNumber body = static_body;
-        Vec3 velocity{0};
+        LayerDrift drift;
 
         bool operator==(Motion const&) const = default;
     };

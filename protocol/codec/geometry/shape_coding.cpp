@@ -56,15 +56,51 @@ void for_each_carried(Shape& shape, Use const& use) {
     }
 }
 
-/// The smallest unit in which all velocities of the shape fit; 0: nothing has a velocity.
-UnitCode velocity_unit(FrameletShape const& shape) {
-    float largest = 0;
+/// Calls `use` with each vector of a drift, in the order in which they are coded, whether it is of accelerations, and
+/// how many of its units make one along the tile's side.
+template <typename AnyDrift, typename Use>
+void for_each_vector(AnyDrift& drift, double side, Use const& use) {
+    if constexpr (requires { drift.corner; }) {
+        use(drift.corner.velocity, false, 1.0);
+        use(drift.corner.acceleration, true, 1.0);
+        use(drift.velocity_dx, false, side);
+        use(drift.velocity_dy, false, side);
+        use(drift.acceleration_dx, true, side);
+        use(drift.acceleration_dy, true, side);
+    } else {
+        use(drift.velocity, false, 1.0);
+        use(drift.acceleration, true, 1.0);
+    }
+}
+
+template <typename AnyDrift>
+auto& jerk_in(AnyDrift& drift) {
+    if constexpr (requires { drift.corner; }) {
+        return drift.corner.jerk;
+    } else {
+        return drift.jerk;
+    }
+}
+
+/// The units of velocities and of accelerations.
+struct DriftUnits {
+    UnitCode velocity = 0, acceleration = 0;
+
+    UnitCode of(bool is_acceleration) const { return is_acceleration ? acceleration : velocity; }
+};
+
+/// The smallest units in which all drifts of the shape fit.
+DriftUnits drift_units(FrameletShape const& shape, double side) {
+    std::array<double, 2> largest{};
     for_each_carried(shape, [&](auto const& carried) {
-        for (int axis = 0; axis < 3; ++axis) {
-            largest = std::max(largest, std::abs(carried.velocity[axis]));
-        }
+        for_each_vector(carried.drift, side, [&](Vec3 const& vector, bool is_acceleration, double scale) {
+            for (int axis = 0; axis < 3; ++axis) {
+                double& most = largest[is_acceleration ? 1 : 0];
+                most = std::max(most, scale * std::abs(static_cast<double>(vector[axis])));
+            }
+        });
     });
-    return unit_above(static_cast<double>(largest) / largest_velocity_code);
+    return {unit_above(largest[0] / largest_drift_code), unit_above(largest[1] / largest_drift_code)};
 }
 
 UnitCode outlier_unit(FrameletShape const& shape) {
@@ -249,29 +285,58 @@ void ShapeModel::code_outliers(Coder& coder, Shape& shape) {
     }
 }
 
-/// Codes the velocities of layers and outliers, each as a difference from the one before.
-template <class Coder, class Shape>
-void ShapeModel::code_velocities(Coder& coder, Shape& shape) {
-    UnitCode const own = Coder::reads ? UnitCode{0} : velocity_unit(shape);
-    if (!coder.bit(velocities_.any, own != 0)) {
+/// Codes `count` values of a drift beside the last one, which becomes it.
+template <class Coder>
+void ShapeModel::code_drift(Coder& coder, std::size_t count, DriftCode& last, DriftCode const& own) {
+    bool const is_same =
+        std::equal(own.values.begin(), own.values.begin() + static_cast<std::ptrdiff_t>(count), last.values.begin()) &&
+        own.jerk == last.jerk;
+    if (coder.bit(drifts_.is_same, is_same)) {
         return;
     }
-    UnitCode const code = checked_unit(velocities_.unit.code(coder, own));
-    std::array<std::int16_t, 3> last{};
+    for (std::size_t i = 0; i < count; ++i) {
+        last.values[i] = sum(last.values[i], drifts_.values[i].code(coder, difference(own.values[i], last.values[i])));
+    }
+    last.jerk = static_cast<JerkCode>(drifts_.jerk.code(coder, own.jerk));
+}
+
+/// Codes the drifts of layers and outliers, each beside the one before.
+template <class Coder, class Shape>
+void ShapeModel::code_drifts(Coder& coder, TilePosition const& position, Shape& shape) {
+    bool any = false;
+    for_each_carried(shape, [&](auto const& carried) { any = any || carried.drift.any(); });
+    if (!coder.bit(drifts_.any, any)) {
+        return;
+    }
+    bool const is_brief = coder.bit(drifts_.is_brief, shape.is_brief);
+    if constexpr (Coder::reads) {
+        shape.is_brief = is_brief;
+    }
+    double const side = std::ldexp(1.0, position.side_bits);
+    DriftUnits units = Coder::reads ? DriftUnits{} : drift_units(shape, side);
+    units.velocity = checked_unit(drifts_.velocity_unit.code(coder, units.velocity));
+    units.acceleration = checked_unit(drifts_.acceleration_unit.code(coder, units.acceleration));
+    DriftCode last;
     for_each_carried(shape, [&](auto& carried) {
-        std::array<std::int16_t, 3> value{};
-        for (std::size_t axis = 0; axis < value.size() && !Coder::reads; ++axis) {
-            value[axis] = quantise_velocity(carried.velocity[static_cast<int>(axis)], code);
-        }
-        if (!coder.bit(velocities_.is_same, value == last)) {
-            for (std::size_t axis = 0; axis < value.size(); ++axis) {
-                last[axis] = sum(last[axis], velocities_.axes[axis].code(coder, difference(value[axis], last[axis])));
+        DriftCode own;
+        std::size_t count = 0;
+        for_each_vector(carried.drift, side, [&](auto const& vector, bool is_acceleration, double scale) {
+            for (int axis = 0; axis < 3; ++axis) {
+                own.values[count++] =
+                    quantise_drift(static_cast<float>(scale) * vector[axis], units.of(is_acceleration));
             }
-        }
+        });
+        own.jerk = quantise_jerk(jerk_in(carried.drift));
+        code_drift(coder, count, last, own);
         if constexpr (Coder::reads) {
-            for (std::size_t axis = 0; axis < value.size(); ++axis) {
-                carried.velocity[static_cast<int>(axis)] = static_cast<float>(last[axis] * unit_of(code));
-            }
+            count = 0;
+            for_each_vector(carried.drift, side, [&](Vec3& vector, bool is_acceleration, double scale) {
+                for (int axis = 0; axis < 3; ++axis) {
+                    vector[axis] =
+                        static_cast<float>(last.values[count++] * unit_of(units.of(is_acceleration)) / scale);
+                }
+            });
+            jerk_in(carried.drift) = jerk_of(last.jerk);
         }
     });
 }
@@ -308,7 +373,7 @@ void ShapeModel::code(Coder& coder, TilePosition const& position, Shape& shape) 
         }
         code_outliers(coder, shape);
     }
-    code_velocities(coder, shape);
+    code_drifts(coder, position, shape);
 }
 
 void ShapeModel::write(RangeWriter& writer, TilePosition const& position, FrameletShape const& shape) {
@@ -319,6 +384,7 @@ void ShapeModel::write(RangeWriter& writer, TilePosition const& position, Framel
 void ShapeModel::read(RangeReader& reader, TilePosition const& position, FrameletShape& shape) {
     shape.layers = {};
     shape.decorrelation = 0;
+    shape.is_brief = false;
     shape.layer_count = 0;
     shape.outliers.clear();
     code(reader, position, shape);

@@ -50,10 +50,19 @@ private:
         template <class Coder>
         BodyNumber code(Coder& coder, BodyNumber last, BodyNumber body);
     };
-    struct VelocityModel {
-        AdaptiveBit any, is_same;
-        AdaptiveTree<8> unit;
-        std::array<AdaptiveNumber<unary>, 3> axes;
+    /// Vectors, velocity and acceleration, in units: a sample's drift, then how a layer's changes along its tile's
+    /// sides.
+    struct DriftCode {
+        static constexpr std::size_t of_sample = 6, of_layer = 18;
+        std::array<std::int16_t, of_layer> values{};
+        JerkCode jerk = 0;
+
+        bool operator==(DriftCode const&) const = default;
+    };
+    struct DriftModel {
+        AdaptiveBit any, is_brief, is_same;
+        AdaptiveTree<8> velocity_unit, acceleration_unit, jerk;
+        std::array<AdaptiveNumber<unary>, DriftCode::of_layer> values;
     };
 
     // The shape and its parts are const where the coder writes, and not where it reads.
@@ -66,7 +75,9 @@ private:
     template <class Coder, class Shape>
     void code_outliers(Coder& coder, Shape& shape);
     template <class Coder, class Shape>
-    void code_velocities(Coder& coder, Shape& shape);
+    void code_drifts(Coder& coder, TilePosition const& position, Shape& shape);
+    template <class Coder>
+    void code_drift(Coder& coder, std::size_t count, DriftCode& last, DriftCode const& own);
     std::size_t nearest(LayerCode const& code, BodyNumber body, TilePosition const& position) const;
     void remember(CodedLayer const& layer);
 
@@ -87,7 +98,7 @@ private:
     std::array<std::array<AdaptiveTree<2>, most_kinds>, most_kinds - 1> others_;
     AdaptiveNumber<unary> outlier_units_;
     std::array<AdaptiveNumber<4>, size_classes> outlier_depths_;
-    VelocityModel velocities_;
+    DriftModel drifts_;
 };
 
 } // namespace framelet

@@ -70,8 +70,21 @@ std::uint8_t quantise_inverse_depth(float inverse_depth, UnitCode unit) {
     return rounded<std::uint8_t>(static_cast<double>(inverse_depth), unit);
 }
 
-std::int16_t quantise_velocity(float velocity, UnitCode unit) {
-    return rounded<std::int16_t>(static_cast<double>(velocity), unit);
+std::int16_t quantise_drift(float component, UnitCode unit) {
+    return rounded<std::int16_t>(static_cast<double>(component), unit);
+}
+
+JerkCode quantise_jerk(float jerk) {
+    FRAMELET_CHECK(jerk >= 0);
+    if (jerk == 0) {
+        return 0;
+    }
+    constexpr float rounding = 1e-3f; // of the logarithm: what a reader has made of a code has that code
+    return static_cast<JerkCode>(std::clamp(std::ceil(8 * std::log2(jerk) + unit_bias - rounding), 1.0f, 255.0f));
+}
+
+float jerk_of(JerkCode code) {
+    return code == 0 ? 0.0f : std::exp2(static_cast<float>(code - unit_bias) / 8);
 }
 
 } // namespace framelet

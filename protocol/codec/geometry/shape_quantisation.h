@@ -29,13 +29,18 @@ struct LayerCode {
 /// larger of an eighth of the layer's error and 2^-9 of |at| + side (|dx| + |dy|), about its largest inverse depth:
 /// what moves by 32 pixels because the camera moves is shown a tenth of a pixel off at most, mostly a third of that.
 LayerCode quantise(Layer const& layer, int side_bits);
-/// The layer that a reader makes of the code, without body and velocity.
+/// The layer that a reader makes of the code, without body and drift.
 Layer dequantise(LayerCode const& code, int side_bits);
 
 /// Largest codes: values are rounded to whole units, and the unit is that above the largest of all values that share
 /// it, divided by these. Outliers are few samples: moved by 20 pixels they are shown a twelfth of a pixel off at most.
-inline constexpr double largest_inverse_depth_code = 255, largest_velocity_code = 32767;
+inline constexpr double largest_inverse_depth_code = 255, largest_drift_code = 32767;
 std::uint8_t quantise_inverse_depth(float inverse_depth, UnitCode unit);
-std::int16_t quantise_velocity(float velocity, UnitCode unit);
+std::int16_t quantise_drift(float component, UnitCode unit);
+
+/// Code of a jerk: 0 for 0, else of 2^((code - 128) / 8) metres a second cubed. It is rounded up, as far as codes go.
+using JerkCode = std::uint8_t;
+JerkCode quantise_jerk(float jerk);
+float jerk_of(JerkCode code);
 
 } // namespace framelet

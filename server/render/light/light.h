@@ -12,7 +12,6 @@ struct RenderLight {
     Vec3 position{0}; ///< world
     Vec3 towards{0, 1, 0}; ///< world, unit; against the direction in which it shines
     float inverse_range = 0; ///< 1 / metres; 0: unlimited
-    Vec3 velocity{0}; ///< of `position`, metres a second
     float cone_scale = 0, cone_offset = 1; ///< spot: (cosine * scale + offset), clamped and squared, weighs the cone
 };
 

@@ -1,6 +1,7 @@
 // Everything that tracing and shading read, in one place. Built and moved by RenderScene, constant while rendering.
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "server/render/light/environment.h"
@@ -10,12 +11,27 @@
 
 namespace framelet {
 
+/// What is known of other scene times, of those that `motion_step` names, where something moves.
+struct MotionTimes {
+    /// False for times between which and the present one the scene jumps: they say nothing of how things go on.
+    std::array<bool, motion_times> usable{};
+    std::array<std::vector<RenderLight>, motion_times> lights;
+    /// By body: what it takes a point of the world from the present time to the other one. Empty where nothing drifts.
+    std::array<std::vector<WorldPlacement>, motion_times> of_body;
+};
+
+/// Seconds from the present scene time to the other ones.
+inline constexpr float motion_step = 0.05f;
+inline constexpr std::array<float, motion_times> motion_seconds{-motion_step, motion_step, 2 * motion_step,
+                                                                6 * motion_step};
+
 struct PreparedScene {
     MaterialLibrary library;
     std::vector<std::vector<Geometry>> meshes; ///< by BVH number; the BVH points at the elements
     std::vector<Instance> instances; ///< by BVH number
     EmbreeScene bvh;
     std::vector<RenderLight> lights;
+    MotionTimes times; ///< what is known of how things move
     Environment environment = Environment::uniform(Vec3(0));
     SplitSumTable split_sum;
     bool moves = false; ///< something moves: tracing keeps which surface gives a sample its depth

@@ -1,4 +1,5 @@
-// Sets bodies and velocities of the instances and the lights.
+// Finds how things move about the present time of the scene: where they are a little before and after it.
+#include <algorithm>
 #include <cmath>
 
 #include <glm/geometric.hpp>
@@ -10,34 +11,35 @@
 namespace framelet {
 namespace {
 
-/// Seconds to the other scene time from which velocities at `time` are taken: shortly after it, or before it where a
-/// clip starts over in between.
-double to_other_time(Scene const& scene, std::span<Index const> clips, SceneTime time) {
-    constexpr double interval = 1.0 / 120;
-    for (Index const clip : clips) {
-        double const duration = scene.clips[static_cast<std::size_t>(clip)].duration;
-        if (duration > 2 * interval) {
-            double const since_start = time - duration * std::floor(time / duration);
-            if (since_start + interval >= duration) {
-                return -interval;
-            }
-        }
-    }
-    return interval;
+/// Metres by which something goes within `motion_step` from which on its shadow is worth following.
+constexpr float least_shadow_step = 0.5f * motion_step;
+/// Angular speed, radians a second, above which what goes along rolls: a third of a second later it shows another
+/// side, and where a ray meets it says little of where its outline goes.
+constexpr float fast_spin = 3;
+/// Angular speed, radians a second, above which the shadow of what turns in place is not followed: it is elsewhere
+/// before it has been sent, and splits framelets of the ground for nothing (measured with sails at 8 and a fan at 5).
+constexpr float fastest_turn = 6;
+/// Metres a second from which on something goes along.
+constexpr float slowest_rolling = 0.01f;
+
+/// Angle by which an instance turns between two placements, radians, for turns of less than half a circle.
+float turn_between(WorldPlacement const& before, WorldPlacement const& after) {
+    Mat3 const turn = after.linear * glm::inverse(before.linear);
+    Vec3 const twice(turn[1][2] - turn[2][1], turn[2][0] - turn[0][2], turn[0][1] - turn[1][0]);
+    float const cosine = 0.5f * (turn[0][0] + turn[1][1] + turn[2][2] - 1);
+    return std::atan2(0.5f * glm::length(twice), cosine);
 }
 
-/// Speed, metres a second, from which on a shadow is worth following: a slower one stays where it is for a tenth of a
-/// second.
-constexpr float fast_shadow = 0.5f;
-/// Angular speed, radians a second, above which something spins: a third of a second later it shows another side, and
-/// where a ray meets it says little of where its outline goes.
-constexpr float fast_spin = 3;
+WorldPlacement placement_of(Mat4 const& world) {
+    return {Mat3(world), Vec3(world[3])};
+}
 
-/// Angular speed of an instance, radians a second, from the rate at which its transform changes.
-float spin_of(Instance const& instance) {
-    Mat3 const change = instance.linear_rate * glm::transpose(instance.normal_matrix); // by the inverse of `linear`
-    Vec3 const twice(change[1][2] - change[2][1], change[2][0] - change[0][2], change[0][1] - change[1][0]);
-    return 0.5f * glm::length(twice);
+WorldPlacement placement_of(BodyPose const& pose) {
+    Mat3 linear = glm::mat3_cast(pose.rotation);
+    for (int axis = 0; axis < 3; ++axis) {
+        linear[axis] *= pose.scale[axis];
+    }
+    return {linear, pose.translation};
 }
 
 } // namespace
@@ -45,68 +47,134 @@ float spin_of(Instance const& instance) {
 void RenderScene::set_clips(std::span<Index const> clips) {
     clips_.assign(clips.begin(), clips.end());
     bodies_ = find_bodies(scene_, clips_);
+    switches_ = find_switches(scene_, clips_);
     prepared_->moves = bodies_.any_moves() || bodies_.any_flows();
-    velocities_.resize(deformed_.size());
+    deformed_motion_.resize(deformed_.size());
     for (Placement const& placement : placements_) {
         Instance& instance = prepared_->instances[placement.instance];
         instance.body = bodies_.body_of_node[placement.node];
         instance.flows = bodies_.flows[placement.node];
+        if (!placement.deforms()) {
+            continue;
+        }
+        std::vector<Geometry>& geometries = prepared_->meshes[placement.mesh];
+        std::vector<DeformedMotion>& motion = deformed_motion_[placement.deformed];
+        motion.resize(geometries.size());
+        for (std::size_t i = 0; i < geometries.size(); ++i) {
+            Geometry& geometry = geometries[i];
+            geometry.elsewhen = {};
+            motion[i].bodies.clear();
+            if (placement.skin != nullptr && instance.flows) {
+                auto const skin = static_cast<std::size_t>(scene_.nodes[placement.node].skin);
+                for (auto const& triangle : geometry.source->triangles) {
+                    motion[i].bodies.push_back(bodies_.body_of_joint[skin][joint_of(*geometry.source, triangle)]);
+                }
+            }
+            geometry.bodies = motion[i].bodies;
+        }
     }
-    update_velocities();
+    update_motion();
 }
 
-void RenderScene::update_velocities() {
+void RenderScene::update_motion() {
     if (!prepared_->moves) {
         return;
     }
+    MotionTimes& times = prepared_->times;
+    for (std::size_t k = 0; k < motion_times; ++k) {
+        SceneTime const time = pose_.time + static_cast<double>(motion_seconds[k]);
+        times.usable[k] = !switches_within(switches_, std::min(time, pose_.time), std::max(time, pose_.time)).any;
+        ScenePose const other = evaluate_pose(scene_, clips_, time);
+        move_bodies(k, other);
+        times.lights[k].clear();
+        for (Light const& light : scene_.lights) {
+            times.lights[k].push_back(make_light(light, other));
+        }
+        if (scene_.lights.empty()) {
+            times.lights[k] = prepared_->lights;
+        }
+        for (Placement const& placement : placements_) {
+            if (prepared_->instances[placement.instance].moves()) {
+                place_elsewhen(placement, k, other);
+            }
+        }
+    }
     prepared_->throws_moving_shadows = false;
-    double const seconds = to_other_time(scene_, clips_, pose_.time);
-    ScenePose const other = evaluate_pose(scene_, clips_, pose_.time + seconds);
-    float const per_second = static_cast<float>(1 / seconds);
     for (Placement const& placement : placements_) {
         Instance& instance = prepared_->instances[placement.instance];
         if (!instance.moves()) {
             continue;
         }
-        bool const deforms = instance.flows && reshaped(placement, other);
-        for (Geometry& geometry : prepared_->meshes[placement.mesh]) {
-            geometry.velocities = {};
-        }
-        instance.linear_rate = Mat3(0);
-        instance.translation_rate = Vec3(0);
-        instance.spins = false;
-        if (deforms) {
-            set_vertex_velocities(placement, other, per_second);
-        } else if (moved(placement, other)) {
-            Mat4 const& now = pose_.world_from_node[placement.node];
-            Mat4 const& then = other.world_from_node[placement.node];
-            instance.linear_rate = (Mat3(then) - Mat3(now)) * per_second;
-            instance.translation_rate = Vec3(then[3] - now[3]) * per_second;
-            instance.spins = spin_of(instance) > fast_spin;
-        }
-        prepared_->throws_moving_shadows |= deforms || glm::length(instance.translation_rate) > fast_shadow;
-    }
-    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
-        RenderLight& light = prepared_->lights[i];
-        light.velocity = (make_light(scene_.lights[i], other).position - light.position) * per_second;
+        std::size_t const k = times.usable[1] ? 1 : 0;
+        WorldPlacement const& other = instance.elsewhen[k];
+        float const gone = glm::distance(other.translation, instance.translation);
+        bool const goes = gone > slowest_rolling * motion_step;
+        float const turn = placement.deforms() ? 0 : turn_between({instance.linear, instance.translation}, other);
+        instance.rolls = goes && turn > fast_spin * motion_step;
+        instance.whirls = !goes && turn > fastest_turn * motion_step;
+        prepared_->throws_moving_shadows = prepared_->throws_moving_shadows || throws_moving_shadow(placement);
     }
 }
 
-void RenderScene::set_vertex_velocities(Placement const& placement, ScenePose const& other, float per_second) {
+/// True when something of the instance goes so fast that its shadow does not stay where it is.
+bool RenderScene::throws_moving_shadow(Placement const& placement) const {
+    Instance const& instance = prepared_->instances[placement.instance];
+    if (!instance.geometries.empty() && !instance.geometries.front().elsewhen[0].empty()) {
+        return true;
+    }
+    WorldPlacement const& other = instance.elsewhen[prepared_->times.usable[1] ? 1 : 0];
+    if (instance.whirls) {
+        return false;
+    }
+    return std::ranges::any_of(instance.geometries, [&](Geometry const& geometry) {
+        constexpr std::size_t step = 16; // vertices: a part of them says as much
+        for (std::size_t i = 0; i < geometry.positions.size(); i += step) {
+            Vec3 const now = instance.linear * geometry.positions[i] + instance.translation;
+            if (glm::distance(other.of(geometry.positions[i]), now) > least_shadow_step) {
+                return true;
+            }
+        }
+        return false;
+    });
+}
+
+void RenderScene::place_elsewhen(Placement const& placement, std::size_t time, ScenePose const& other) {
+    Instance& instance = prepared_->instances[placement.instance];
+    instance.elsewhen[time] =
+        placement.skin != nullptr ? WorldPlacement{} : placement_of(other.world_from_node[placement.node]);
+    if (placement.deforms() && instance.flows) {
+        deform_elsewhen(placement, time, other);
+    }
+}
+
+void RenderScene::deform_elsewhen(Placement const& placement, std::size_t time, ScenePose const& other) {
     std::vector<Geometry>& geometries = prepared_->meshes[placement.mesh];
-    std::vector<std::vector<Vec3>>& velocities = velocities_[placement.deformed];
-    velocities.resize(geometries.size());
-    Mat4 const now = placement.skin ? Mat4(1) : pose_.world_from_node[placement.node];
-    Mat4 const then = placement.skin ? Mat4(1) : other.world_from_node[placement.node];
+    WorldPlacement const& placed = prepared_->instances[placement.instance].elsewhen[time];
     for (std::size_t i = 0; i < geometries.size(); ++i) {
         Geometry& geometry = geometries[i];
+        std::vector<Vec3>& positions = deformed_motion_[placement.deformed][i].elsewhen[time];
         deform(*geometry.source, other.morph_weights[placement.node], placement.skin, other, elsewhen_);
-        velocities[i].resize(geometry.positions.size());
-        for (std::size_t v = 0; v < geometry.positions.size(); ++v) {
-            Vec4 const to = then * Vec4(elsewhen_.positions[v], 1), from = now * Vec4(geometry.positions[v], 1);
-            velocities[i][v] = Vec3(to - from) * per_second;
-        }
-        geometry.velocities = velocities[i];
+        positions.resize(geometry.positions.size());
+        std::ranges::transform(elsewhen_.positions, positions.begin(), [&](Vec3 const& x) { return placed.of(x); });
+        geometry.elsewhen[time] = positions;
+    }
+}
+
+/// Finds what bodies do to points between the present time and the other one; only what drifts is compared with it.
+void RenderScene::move_bodies(std::size_t time, ScenePose const& other) {
+    std::vector<WorldPlacement>& moved = prepared_->times.of_body[time];
+    moved.clear();
+    if (!bodies_.any_flows()) {
+        return;
+    }
+    for (std::size_t body = 0; body < bodies_.frames.size(); ++body) {
+        auto const number = static_cast<BodyNumber>(body);
+        WorldPlacement const now = placement_of(body_pose(bodies_, pose_, number));
+        WorldPlacement const then = placement_of(body_pose(bodies_, other, number));
+        Mat3 const linear = then.linear * glm::inverse(now.linear);
+        Vec3 const translation = then.translation - linear * now.translation;
+        bool const is_finite = std::isfinite(glm::dot(linear[0] + linear[1] + linear[2] + translation, Vec3(1)));
+        moved.push_back(is_finite ? WorldPlacement{linear, translation} : WorldPlacement{});
     }
 }
 

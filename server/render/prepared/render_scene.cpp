@@ -240,7 +240,7 @@ void RenderScene::set_pose(ScenePose const& pose) {
     if (!move.empty() || !reshape.empty()) {
         prepared_->bvh.commit();
     }
-    update_velocities();
+    update_motion();
     is_placed_ = true;
 }
 

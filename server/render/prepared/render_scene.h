@@ -6,8 +6,10 @@
 #include <optional>
 
 #include "server/render/light/environment.h"
+#include "server/render/surface/geometry.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
+#include "server/scene/motion/switches.h"
 #include "server/scene/reading/progress.h"
 #include "server/scene/scene.h"
 
@@ -32,8 +34,8 @@ public:
     /// builds every BVH anew.
     void set_pose(ScenePose const& pose);
 
-    /// From now on framelets say which bodies carry their samples and how fast those move that no body carries, while
-    /// these clips play. Not to be called while anything renders. At first nothing plays: everything is static.
+    /// From now on framelets say which bodies carry their samples and how these drift besides, while these clips play.
+    /// Not to be called while anything renders. At first nothing plays: everything is static.
     void set_clips(std::span<Index const> clips);
     SceneBodies const& bodies() const { return bodies_; }
 
@@ -59,8 +61,11 @@ private:
     bool moved(Placement const& placement, ScenePose const& pose) const;
     bool reshaped(Placement const& placement, ScenePose const& pose) const;
     void update_lights();
-    void update_velocities();
-    void set_vertex_velocities(Placement const& placement, ScenePose const& other, float per_second);
+    void update_motion();
+    void place_elsewhen(Placement const& placement, std::size_t time, ScenePose const& other);
+    void deform_elsewhen(Placement const& placement, std::size_t time, ScenePose const& other);
+    void move_bodies(std::size_t time, ScenePose const& other);
+    bool throws_moving_shadow(Placement const& placement) const;
 
     Scene const& scene_;
     std::unique_ptr<PreparedScene> prepared_;
@@ -71,7 +76,14 @@ private:
     bool is_placed_ = false; ///< everything stands as `pose_` says
     std::vector<Index> clips_;
     SceneBodies bodies_;
-    std::vector<std::vector<std::vector<Vec3>>> velocities_; ///< by deforming mesh, primitive and vertex
+    std::vector<ClipSwitches> switches_; ///< of `clips_`
+    /// By deforming mesh and primitive: where its vertices are in the world at other times, and the bodies of its
+    /// triangles.
+    struct DeformedMotion {
+        std::array<std::vector<Vec3>, motion_times> elsewhen;
+        std::vector<BodyNumber> bodies;
+    };
+    std::vector<std::vector<DeformedMotion>> deformed_motion_;
     DeformedVertices elsewhen_; ///< scratch
 };
 

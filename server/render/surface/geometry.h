@@ -1,6 +1,7 @@
 // The things that the BVH's numbers stand for: triangle lists with their attributes, and meshes placed in the world.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -10,6 +11,9 @@
 
 namespace framelet {
 
+/// The other scene times by which motion is known: one before, three after the present one.
+inline constexpr std::size_t motion_times = 4;
+
 /// One Primitive as the renderer reads it, in its instance's own space. Its positions live in the BVH's own buffer.
 struct Geometry {
     Primitive const* source = nullptr; ///< triangles, uv and colours
@@ -17,7 +21,18 @@ struct Geometry {
     std::span<Vec3> positions;
     std::span<Vec3 const> normals;
     std::span<Vec4 const> tangents; ///< empty where there are none
-    std::span<Vec3 const> velocities; ///< of the vertices, world metres a second; empty where it does not deform
+    /// Where the vertices are in the world at the other times of the scene (`MotionTimes`); empty where it does not
+    /// deform.
+    std::array<std::span<Vec3 const>, motion_times> elsewhen;
+    std::span<BodyNumber const> bodies; ///< that carry the triangles, where the instance has no body of its own
+};
+
+/// Where something is placed in the world: linear * x + translation, metres.
+struct WorldPlacement {
+    Mat3 linear{1};
+    Vec3 translation{0};
+
+    Vec3 of(Vec3 const& x) const { return linear * x + translation; }
 };
 
 /// Opacity at a point of a triangle: base colour's alpha, map and vertex colour multiplied.
@@ -34,10 +49,10 @@ struct Instance {
     Mat3 normal_matrix{1}; ///< inverse transpose of `linear`
     float handedness = 1; ///< -1 where the transform mirrors: the winding then reads clockwise in the world
     BodyNumber body = static_body;
-    bool flows = false; ///< its samples have velocities, of the vertices or of the transform
-    Mat3 linear_rate{0}; ///< change of `linear` per second; set for bodies as well
-    Vec3 translation_rate{0}; ///< metres a second
-    bool spins = false; ///< turns so fast that none of its points goes straight on for long
+    bool flows = false; ///< its samples drift besides what their bodies do
+    std::array<WorldPlacement, motion_times> elsewhen; ///< of what moves and does not deform, at the other times
+    bool rolls = false; ///< turns fast as it goes, so that its outline goes with its origin
+    bool whirls = false; ///< turns so fast in its place that its shadow is not followed
 
     /// True where it may be elsewhere soon: carried by a body, or deforming.
     bool moves() const { return body != static_body || flows; }

@@ -1,17 +1,84 @@
 #include "server/render/trace/sample_motion.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include <glm/geometric.hpp>
+
 #include "server/render/surface/hit_frame.h"
 
 namespace framelet {
+namespace {
 
-Vec3 velocity_at(Instance const& instance, HitPacket const& hits, int lane) {
+/// The body that carries what a lane has met.
+BodyNumber body_at(Instance const& instance, HitPacket const& hits, int lane) {
+    Geometry const& geometry = instance.geometries[hits.geometry[lane]];
+    return geometry.bodies.empty() ? instance.body : geometry.bodies[hits.triangle[lane]];
+}
+
+Vec3 position_at(Instance const& instance, HitPacket const& hits, int lane) {
     Geometry const& geometry = instance.geometries[hits.geometry[lane]];
     TrianglePoint const point = point_of(geometry, hits.triangle[lane], hits.u[lane], hits.v[lane]);
-    if (!geometry.velocities.empty()) {
-        return point.interpolate(geometry.velocities);
+    return instance.linear * point.interpolate(std::span<Vec3 const>(geometry.positions)) + instance.translation;
+}
+
+/// The drift of what a lane has met besides what its body does.
+Drift drift_at(PreparedScene const& scene, Instance const& instance, HitPacket const& hits, int lane, BodyNumber body) {
+    Vec3 const now = position_at(instance, hits, lane);
+    Course off = course_of(instance, hits, lane);
+    for (std::size_t k = 0; k < motion_times; ++k) {
+        off[k] -= scene.times.of_body[k][body].of(now);
     }
-    Vec3 const position = point.interpolate(std::span<Vec3 const>(geometry.positions));
-    return instance.linear_rate * position + instance.translation_rate;
+    return drift_of(off, scene.times.usable, rounding_of(now));
+}
+
+} // namespace
+
+Course course_of(Instance const& instance, HitPacket const& hits, int lane) {
+    Geometry const& geometry = instance.geometries[hits.geometry[lane]];
+    TrianglePoint const point = point_of(geometry, hits.triangle[lane], hits.u[lane], hits.v[lane]);
+    Course course;
+    for (std::size_t k = 0; k < motion_times; ++k) {
+        course[k] = geometry.elsewhen[k].empty()
+                        ? instance.elsewhen[k].of(point.interpolate(std::span<Vec3 const>(geometry.positions)))
+                        : point.interpolate(geometry.elsewhen[k]);
+    }
+    return course;
+}
+
+float rounding_of(Vec3 const& position) {
+    constexpr float share = 2e-6f; // of sums of products of single-precision numbers
+    return share * (std::abs(position.x) + std::abs(position.y) + std::abs(position.z));
+}
+
+Drift drift_of(Course const& off, std::array<bool, motion_times> const& usable, float rounding) {
+    constexpr float step = motion_step;
+    Vec3 const &before = off[0], &after = off[1], &later = off[2];
+    Drift drift;
+    if (usable[0] && usable[1]) {
+        drift.velocity = (after - before) / (2 * step);
+        drift.acceleration = (after + before) / (step * step);
+        // A cubic of this jerk adds jerk step^2 / 6 to the velocity, and after n steps misses by (n^3 - n) / 6 jerk
+        // step^3.
+        auto const jerk_of = [&](std::size_t time, float steps) {
+            float const missed = usable[time] ? glm::length(off[time] - drift.after(steps * step)) : 0.0f;
+            return missed > rounding ? 6 * missed / ((steps * steps - 1) * steps * step * step * step) : 0.0f;
+        };
+        drift.jerk = std::max(jerk_of(2, 2), jerk_of(3, 6));
+    } else if (usable[1] && usable[2]) {
+        drift.velocity = (4.0f * after - later) / (2 * step);
+        drift.acceleration = (later - 2.0f * after) / (step * step);
+    } else if (usable[0] || usable[1]) {
+        drift.velocity = usable[1] ? after / step : -before / step;
+    }
+    bool const rests =
+        glm::length(drift.velocity) * step <= rounding && glm::length(drift.acceleration) * step * step <= 2 * rounding;
+    if (rests) {
+        drift.velocity = drift.acceleration = Vec3(0);
+    }
+    bool const is_finite =
+        std::isfinite(glm::dot(drift.velocity, Vec3(1)) + glm::dot(drift.acceleration, Vec3(1)) + drift.jerk);
+    return is_finite ? drift : Drift{};
 }
 
 void add_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out) {
@@ -21,17 +88,23 @@ void add_motion(PreparedScene const& scene, TracedPacket const& traced, int firs
             continue;
         }
         Instance const& instance = scene.instances[number];
+        if (!instance.moves()) {
+            continue;
+        }
         auto const sample = static_cast<std::size_t>(first + i);
-        if (instance.body != static_body) {
+        BodyNumber const body = body_at(instance, traced.surface, i);
+        if (body != static_body) {
             if (out.body.empty()) {
                 out.body.assign(framelet_samples, static_body);
             }
-            out.body[sample] = instance.body;
-        } else if (instance.flows) {
-            if (out.velocity.empty()) {
-                out.velocity.assign(framelet_samples, Vec3(0));
+            out.body[sample] = body;
+        }
+        if (instance.flows) {
+            if (out.drift.empty()) {
+                out.drift.assign(framelet_samples, Drift{});
             }
-            out.velocity[sample] = velocity_at(instance, traced.surface, i);
+            out.drift[sample] = drift_at(scene, instance, traced.surface, i, body);
+            out.drift[sample].jerk = std::max(out.drift[sample].jerk, least_jerk);
         }
     }
 }

@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "server/render/surface/hit_frame.h"
 #include "server/render/trace/sample_motion.h"
 #include "server/render/trace/shading.h"
 
@@ -15,9 +16,6 @@ namespace {
 constexpr float least_steepness = 0.02f;
 /// Speeds of shadows, metres a second: what is slower rests, what is faster is a leap.
 constexpr float slowest = 0.01f, fastest = 200;
-/// Velocities are multiples of this, metres a second: samples of one shadow get the very same velocity, so that their
-/// layers can be joined.
-constexpr float step = 1.0f / 32;
 
 /// Rays to the light from each lane that has lost one.
 struct LostLights {
@@ -55,47 +53,67 @@ void aim(PreparedScene const& scene, TracedPacket const& traced, LostLights& out
     });
 }
 
-Vec3 rounded(Vec3 const& velocity) {
-    return step * glm::round(velocity / step);
+/// Where the point that throws a shadow is, now and at other times.
+struct Occluder {
+    Vec3 now{0};
+    Course course{};
+};
+
+/// The shadow of what rolls goes with its origin; that of what whirls, where it stands, stays.
+Occluder occluder_of(Instance const& instance, HitPacket const& hits, int lane, Vec3 const& at) {
+    Occluder occluder{at, course_of(instance, hits, lane)};
+    for (std::size_t k = 0; k < motion_times && (instance.rolls || instance.whirls); ++k) {
+        occluder.course[k] = at + (instance.elsewhen[k].translation - instance.translation);
+    }
+    return occluder;
 }
 
-/// Velocity of the point that throws the shadow. The shadow of what spins goes with its origin.
-Vec3 velocity_of_occluder(Instance const& instance, HitPacket const& hits, int lane) {
-    return instance.spins ? instance.translation_rate : velocity_at(instance, hits, lane);
-}
-
-/// Velocity of the shadow in lane `i`. Where occluders are behind one another, the outline of the one farther from the
-/// surface is taken to show. Where both hits are on the same body it is the mean of both: the outline of a ball that
-/// rolls goes with its middle, and half way between where a ray enters it and where it leaves it nothing turns but
+/// The drift of the shadow in lane `i`. Where occluders are behind one another, the outline of the one farther from the
+/// surface is taken to show. Where both hits are on the same instance it is the mean of both: the outline of a ball
+/// that rolls goes with its middle, and half way between where a ray enters it and where it leaves it nothing turns but
 /// along the ray.
-Vec3 velocity_of_shadow(PreparedScene const& scene, TracedPacket const& traced, LostLights const& lost,
-                        HitPacket const& nearest, HitPacket const& farthest, int i) {
+Drift drift_of_shadow(PreparedScene const& scene, TracedPacket const& traced, LostLights const& lost,
+                      HitPacket const& nearest, HitPacket const& farthest, int i) {
+    std::uint32_t const light = traced.lost_light[i];
+    Vec3 const on = traced.leaving.get(i), facet = traced.facet.get(i);
+    float rounding = rounding_of(on);
     auto const thrown_by = [&](HitPacket const& hits) {
-        return shadow_velocity(scene.lights[traced.lost_light[i]], traced.facet.get(i), lost.rays.direction.get(i),
-                               lost.distance[i], hits.t[i],
-                               velocity_of_occluder(scene.instances[hits.instance[i]], hits, i));
+        Vec3 const at = on + hits.t[i] * lost.rays.direction.get(i);
+        Occluder const occluder = occluder_of(scene.instances[hits.instance[i]], hits, i, at);
+        rounding += rounding_of(at);
+        Vec3 const now = shadow_of(occluder.now, scene.lights[light], on, facet);
+        Course off;
+        for (std::size_t k = 0; k < motion_times; ++k) {
+            off[k] = shadow_of(occluder.course[k], scene.times.lights[k][light], on, facet) - now;
+        }
+        return off;
     };
-    Vec3 const velocity = thrown_by(farthest);
-    bool const one_body = scene.instances[nearest.instance[i]].body == scene.instances[farthest.instance[i]].body;
-    return one_body ? 0.5f * (velocity + thrown_by(nearest)) : velocity;
+    Course off = thrown_by(farthest);
+    if (nearest.instance[i] == farthest.instance[i]) {
+        Course const other = thrown_by(nearest);
+        for (std::size_t k = 0; k < motion_times; ++k) {
+            off[k] = 0.5f * (off[k] + other[k]);
+        }
+    }
+    return drift_of(off, scene.times.usable, rounding);
+}
+
+/// False for shadows that are not worth following.
+bool is_followed(Drift const& drift) {
+    float const velocity = glm::length(drift.velocity);
+    return velocity < fastest && velocity + motion_step * glm::length(drift.acceleration) > slowest;
 }
 
 } // namespace
 
-Vec3 shadow_velocity(RenderLight const& light, Vec3 const& facet, Vec3 const& to_light, float distance_to_light,
-                     float distance, Vec3 const& occluder) {
+Vec3 shadow_of(Vec3 const& point, RenderLight const& light, Vec3 const& on, Vec3 const& facet) {
+    Vec3 const to_light =
+        light.type == LightType::directional ? light.towards : unit_or(light.position - point, light.towards);
     float const steepness = glm::dot(to_light, facet);
     if (!(std::abs(steepness) > least_steepness)) {
-        return Vec3(0);
+        return Vec3(NAN);
     }
-    Vec3 across = occluder;
-    if (std::isfinite(distance_to_light)) { // what is near to the lamp throws its shadow so much farther
-        float const scale = distance_to_light / (distance_to_light - distance);
-        across = light.velocity + scale * (occluder - light.velocity);
-    }
-    Vec3 const along = across - to_light * (glm::dot(across, facet) / steepness);
-    float const squared = glm::dot(along, along);
-    return squared > slowest * slowest && squared < fastest * fastest ? along : Vec3(0);
+    return point - to_light * (glm::dot(point - on, facet) / steepness);
 }
 
 std::uint32_t add_shadow_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out) {
@@ -108,14 +126,14 @@ std::uint32_t add_shadow_motion(PreparedScene const& scene, TracedPacket const& 
     HitPacket nearest, farthest;
     LaneMask const moving = scene.bvh.intersect_moving(lost.rays, lost.lanes, scene.instances, nearest, farthest);
     for_each_lane(moving, [&](int i) {
-        Vec3 const velocity = rounded(velocity_of_shadow(scene, traced, lost, nearest, farthest, i));
-        if (velocity == Vec3(0)) {
+        Drift const drift = drift_of_shadow(scene, traced, lost, nearest, farthest, i);
+        if (!is_followed(drift)) {
             return;
         }
-        if (out.velocity.empty()) {
-            out.velocity.assign(framelet_samples, Vec3(0));
+        if (out.drift.empty()) {
+            out.drift.assign(framelet_samples, Drift{});
         }
-        out.velocity[static_cast<std::size_t>(first + i)] = velocity;
+        out.drift[static_cast<std::size_t>(first + i)] = drift;
     });
     return static_cast<std::uint32_t>(std::popcount(lost.lanes));
 }

@@ -1,4 +1,4 @@
-// Finds how fast the shadows of what moves pass over what does not. In: traced packets. Out: velocities of a framelet's
+// Finds how the shadows of what moves pass over what does not. In: traced packets. Out: drifts of a framelet's
 // samples, as of what deforms: a viewer then moves the shadow and not the surface that it lies on.
 #pragma once
 
@@ -8,14 +8,11 @@
 
 namespace framelet {
 
-/// Velocity, metres a second, of a shadow on a plane of unit normal `facet`: that of a point which moves with velocity
-/// `occluder` and lies `distance` metres from where its shadow falls, in the unit direction `to_light`. It lies in the
-/// plane. It is 0 where light grazes the plane, and where the shadow would be too slow or too fast to be worth
-/// following.
-Vec3 shadow_velocity(RenderLight const& light, Vec3 const& facet, Vec3 const& to_light, float distance_to_light,
-                     float distance, Vec3 const& occluder);
+/// Where the shadow of a point falls on a plane through `on` of unit normal `facet`, metres in the world. Not finite,
+/// or anywhere, where light grazes the plane.
+Vec3 shadow_of(Vec3 const& point, RenderLight const& light, Vec3 const& on, Vec3 const& facet);
 
-/// Adds velocities of shadows to the lanes of a packet, samples `first` .. `first` + 15 of the framelet: to those on
+/// Adds drifts of shadows to the lanes of a packet, samples `first` .. `first` + 15 of the framelet: to those on
 /// static surfaces that have lost their strongest light to something that moves, and to nothing that does not. Returns
 /// how many rays that took: one for each lane that is static and has lost its light.
 std::uint32_t add_shadow_motion(PreparedScene const& scene, TracedPacket const& traced, int first, Framelet& out);

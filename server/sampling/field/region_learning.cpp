@@ -99,7 +99,7 @@ float probed_error(std::span<float const> luma, Before&& before) {
 
 bool shows_motion(Framelet const& framelet) {
     return std::ranges::any_of(framelet.body, [](BodyNumber body) { return body != static_body; }) ||
-           std::ranges::any_of(framelet.velocity, [](Vec3 const& velocity) { return velocity != Vec3(0); });
+           std::ranges::any_of(framelet.drift, [](Drift const& drift) { return drift.any(); });
 }
 
 bool is_change(Observation const& seen) {

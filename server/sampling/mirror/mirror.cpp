@@ -12,6 +12,8 @@ namespace {
 constexpr float same_surface = 0.02f;
 /// A piece that covers fewer pixels of a cell than this shows only where it covers more of them than another.
 constexpr int least_share = cell_pixels / 2;
+/// Squared luma by which what has drifted for too long is taken to look otherwise than it shows.
+constexpr float lost_error = 0.001f;
 /// More than a viewer can hold is not worth remembering as gone.
 constexpr std::size_t most_forgotten = std::size_t{1} << 18;
 /// A moment keeps room for a piece for so many cells, which is a quarter of what a picture at rest has.
@@ -43,7 +45,7 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
     std::ranges::fill(cells_, Cell{});
     erase_forgotten();
     for (Moment& moment : moments_) {
-        draw(moment, 0, motions);
+        draw(moment, 0, motions, false);
     }
 }
 
@@ -110,7 +112,7 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
     standing_.clear();
     moving_.clear();
     for (Piece const& piece : pieces) {
-        bool const stands = !piece.moves || piece.rests || moments_[base_].scene_time == scene_time;
+        bool const stands = !piece.moves || piece.rests || piece.is_brief || moments_[base_].scene_time == scene_time;
         (stands ? standing_ : moving_).push_back(piece);
     }
     add_to(moments_[base_], motions, standing_);
@@ -123,7 +125,7 @@ void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece 
     replace(moment, pieces);
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
-    draw(moment, first, motions);
+    draw(moment, first, motions, true);
 }
 
 void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
@@ -234,11 +236,12 @@ bool Mirror::shows_outliers(Moment const& moment) const {
 }
 
 PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
-    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
+    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions,
+            &moment == &moments_[base_]}; // the last cells are whole, too
 }
 
-/// Draws the pieces of a moment, from `first` on, into the cells.
-void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions) {
+/// Draws the pieces of a moment, from `first` on, into the cells. `is_new`: they have just come.
+void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions, bool is_new) {
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.reprojected.resize(first);
     reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first), shows_outliers(moment), transforms_,
@@ -247,7 +250,7 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions)
         if (moment.reprojected[i].is_in_picture()) {
             ReprojectedPiece const& piece = moment.reprojected[i];
             for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
-                             [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row); });
+                             [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row, is_new); });
         }
     }
     if (&moment == &moments_[base_] && moment.is_of_camera) {
@@ -283,13 +286,16 @@ void Mirror::cover(Moment const& moment, std::size_t index) {
 }
 
 /// Covers the pixels `mask` of a cell by a piece, which shows where it is better than what shows.
-void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row) {
+void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new) {
     ReprojectedPiece const& reprojected = moment.reprojected[index];
     Cell& cell = cells_[index_of(column, row)];
     cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
-    if (moment.is_of_camera) {
+    if (is_new && moment.is_of_camera) {
         cell.is_wrong = false;
         cell.stale = 0;
+    }
+    if (reprojected.is_lost) { // however little of it shows
+        cell.stale = std::max(cell.stale, lost_error);
     }
     Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
     Vec2 const from = glm::clamp(middle - reprojected.at, -reprojected.half_side, reprojected.half_side);

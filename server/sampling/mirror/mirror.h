@@ -90,10 +90,10 @@ private:
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
-    void draw(Moment& moment, std::size_t first, BodyMotions const& motions);
+    void draw(Moment& moment, std::size_t first, BodyMotions const& motions, bool is_new);
     void cover_from(Moment const& moment, std::size_t first);
     void cover(Moment const& moment, std::size_t index);
-    void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row);
+    void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new);
     void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
                    Cell const& cell) const;

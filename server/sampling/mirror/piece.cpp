@@ -56,7 +56,7 @@ struct Sum {
 /// The same sums over samples that lie on no layer.
 struct OutlierSum : Sum {
     float inverse_depth = 0, least = INFINITY, most = 0;
-    Vec3 velocity{0};
+    Drift drift; ///< its jerk is the greatest
     BodyNumber body = static_body; ///< of the last one
 
     void add(std::uint32_t i, float value, bool reflected, Outlier const& sample) {
@@ -65,7 +65,9 @@ struct OutlierSum : Sum {
         inverse_depth += w;
         least = std::min(least, w);
         most = std::max(most, w);
-        velocity += sample.velocity;
+        drift.velocity += sample.drift.velocity;
+        drift.acceleration += sample.drift.acceleration;
+        drift.jerk = std::max(drift.jerk, sample.drift.jerk);
         body = sample.body;
     }
 };
@@ -99,13 +101,13 @@ void put_on(Layer const& layer, Vec2 corner, Piece& piece) {
     piece.inverse_depth = bounded(layer.at + from.x * layer.dx + from.y * layer.dy);
     piece.depth_slope = {layer.dx, layer.dy};
     piece.error = layer.error;
-    piece.velocity = layer.velocity;
+    piece.drift = layer.drift.at(from);
     piece.body = layer.body;
 }
 
 void put_on(OutlierSum const& sum, Piece& piece) {
     piece.inverse_depth = sum.inverse_depth / sum.count;
-    piece.velocity = sum.velocity / sum.count;
+    piece.drift = {sum.drift.velocity / sum.count, sum.drift.acceleration / sum.count, sum.drift.jerk};
     piece.body = sum.body;
     piece.is_outlier = true;
 }
@@ -181,6 +183,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
                 pieces.back().scene_time = scene_time;
                 pieces.back().of = {batch, shown.tile};
                 pieces.back().moves = moves;
+                pieces.back().is_brief = shape.is_brief;
                 pieces.back().is_supersampled = rendered.is_supersampled;
                 put(pieces.back());
             }

@@ -25,10 +25,11 @@ struct Piece {
     float detail = 0;
     float decorrelation = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
     SceneTime scene_time = 0; ///< when it was rendered
-    Vec3 velocity{0}; ///< of what deforms, metres a second in the world at its scene time
+    Drift drift; ///< at the centre
     BodyNumber body = static_body;
     bool is_outlier = false; ///< its samples lie on no layer
     bool moves = false; ///< something in its framelet may move, being on a body or deforming
+    bool is_brief = false; ///< as of `FrameletShape`: the viewer holds it with what stands
     bool rests = false; ///< nothing in its framelet moves about its scene time: the viewer holds it with what stands
     bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
     bool is_supersampled = false; ///< its samples are means of four rays each

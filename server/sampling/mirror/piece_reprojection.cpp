@@ -57,11 +57,25 @@ BodyTransform const& transform_of(PieceReprojection const& reprojection, Piece c
     return transform;
 }
 
-/// Takes one piece to the picture. `size`: of the picture, pixels; `age`: of the piece in it, seconds of scene time.
-ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 size, float age) {
+/// The picture that a piece is taken to.
+struct Display {
+    Vec2 size{0}; ///< pixels
+    float source_focal = 1, focal = 1; ///< focal lengths, pixels, of the piece's camera and of the picture's
+    bool is_base = true; ///< as of `PieceReprojection`
+};
+
+/// Takes one piece to the picture. `age`: of the piece in it, seconds of scene time.
+ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Display const& display, float age) {
+    Vec2 const size = display.size;
     Vec3 parallax = body.parallax;
-    if (piece.velocity != Vec3(0)) {
-        Vec3 const drift = age * piece.velocity;
+    bool is_lost = false;
+    if (piece.drift.any()) {
+        float const followed = followed_seconds(piece.drift.jerk, piece.inverse_depth * display.source_focal);
+        is_lost = std::abs(age) > followed;
+        if (is_lost && !display.is_base) {
+            return {};
+        }
+        Vec3 const drift = piece.drift.after(std::clamp(age, -followed, followed));
         parallax += drift.x * body.carried[0] + drift.y * body.carried[1] + drift.z * body.carried[2];
     }
     Vec3 const at = body.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
@@ -89,13 +103,14 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     float const tolerance = share * piece.error;
     float spacing = piece.spacing;
     float misplaced = 0;
-    reprojected.is_still = body.is_still && piece.velocity == Vec3(0);
+    reprojected.is_lost = is_lost;
+    reprojected.is_still = body.is_still && !piece.drift.any();
     if (!piece.is_outlier) { // as the viewer rates them
         float const squares = glm::dot(right, right) + glm::dot(down, down);
         spacing *= std::sqrt(0.5f * (squares + std::sqrt(std::max(squares * squares - 4 * area * area, 0.0f))));
         misplaced = reprojected.is_still ? 0 : tolerance * glm::length(Vec2(parallax) - parallax.z * reprojected.at);
         if (!hides(spacing, misplaced) ||
-            is_adrift(piece.body, piece.velocity, std::abs(age) + renewal_seconds)) { // it shows where nothing does
+            is_adrift(piece.body, piece.drift, std::abs(age) + renewal_seconds)) { // it shows where nothing does
             return {};
         }
     } else {
@@ -105,8 +120,9 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Vec2 s
     Vec2 const slope = share * (piece.depth_slope - reprojected.inverse_depth * Vec2(dx.z, dy.z)); // along its own axes
     reprojected.depth_slope = Vec2(down.y * slope.x - right.y * slope.y, right.x * slope.y - down.x * slope.x) / area;
     reprojected.tolerance = tolerance;
-    reprojected.leads = leads(piece.body, piece.velocity, std::abs(age) + renewal_seconds) && !piece.is_outlier;
+    reprojected.leads = leads(piece.body, piece.drift, std::abs(age) + renewal_seconds) && !piece.is_outlier;
     float const rate = reprojected.is_still ? 0 : piece.decorrelation;
+    misplaced += straying(piece.drift.jerk, reprojected.inverse_depth * display.focal, age);
     reprojected.worn = worn_step(worn_spacing(spacing, age, rate) + misplaced);
     return reprojected;
 }
@@ -122,16 +138,18 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
     SceneTime const last_jump = reprojection.motions->last_jump(reprojection.display.scene_time);
+    auto const focal = [](ViewRays const& rays) { return 1 / glm::length(rays.direction_dx); };
+    Display const display{reprojection.display_size, focal(reprojection.source), focal(reprojection.display.rays),
+                          reprojection.is_base};
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         Piece const& piece = pieces[i];
         if (i > 0 && piece.scene_time != pieces[i - 1].scene_time) {
             ++transforms.stamp; // bodies were elsewhere
         }
         auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
-        reprojected.push_back(
-            with_outliers || !piece.is_outlier
-                ? reproject(piece, transform_of(reprojection, piece, transforms), reprojection.display_size, age)
-                : ReprojectedPiece{});
+        reprojected.push_back(with_outliers || !piece.is_outlier
+                                  ? reproject(piece, transform_of(reprojection, piece, transforms), display, age)
+                                  : ReprojectedPiece{});
         reprojected.back().is_outdated = piece.scene_time < last_jump;
     }
 }

@@ -35,6 +35,7 @@ struct ReprojectedPiece {
     bool leads = false; ///< a shadow that shows before what it comes over
     bool is_still = false; ///< its pixels are where they were rendered
     bool is_outdated = false; ///< the scene has jumped since it was rendered
+    bool is_lost = false; ///< it has drifted for longer than is known where to
 
     bool is_in_picture() const { return inverse_depth >= 0; }
 };
@@ -62,6 +63,7 @@ struct PieceReprojection {
     MirrorView display{};
     Vec2 display_size{0}; ///< pixels
     BodyMotions const* motions = nullptr; ///< not null
+    bool is_base = true; ///< the moment is the newest camera's base, where newer framelets replace older ones
 };
 
 /// Appends one to `reprojected` for each piece. Not in the picture are outliers unless `with_outliers`, what lies

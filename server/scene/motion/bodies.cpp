@@ -69,6 +69,26 @@ bool SceneBodies::any_flows() const {
     return std::ranges::find(flows, true) != flows.end();
 }
 
+std::size_t joint_of(Primitive const& primitive, std::array<std::uint32_t, 3> const& triangle) {
+    std::size_t best = 0;
+    float most = -1;
+    for (std::uint32_t const corner : triangle) {
+        std::uint16_t const joint = primitive.influences[corner].joints[0]; // the strongest come first
+        float sum = 0;
+        for (std::uint32_t const vertex : triangle) {
+            JointInfluence const& influence = primitive.influences[vertex];
+            for (std::size_t k = 0; k < influence.joints.size(); ++k) {
+                sum += influence.joints[k] == joint ? influence.weights[k] : 0;
+            }
+        }
+        if (sum > most) {
+            most = sum;
+            best = joint;
+        }
+    }
+    return best;
+}
+
 SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips) {
     std::size_t const count = scene.nodes.size();
     NodeMotion const motion = node_motion(scene, clips);
@@ -79,6 +99,13 @@ SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips) {
     std::vector<Index> frame(count, none); // nearest node that the clips move
     std::vector<bool> rigid_above(count, true); // nothing above it shears what turns below
     std::vector<BodyNumber> number(count, static_body); // number of the body whose frame the node is
+    auto const number_of = [&](std::size_t node) {
+        if (number[node] == static_body && bodies.frames.size() <= most_bodies) {
+            number[node] = static_cast<BodyNumber>(bodies.frames.size());
+            bodies.frames.push_back(static_cast<Index>(node));
+        }
+        return number[node];
+    };
     for (std::size_t i = 0; i < count; ++i) { // parents come first
         Node const& node = scene.nodes[i];
         if (node.parent != none) {
@@ -97,16 +124,28 @@ SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips) {
             bodies.flows[i] = motion.morphs[i] || std::ranges::any_of(joints, [&](Index joint) {
                                   return moving[static_cast<std::size_t>(joint)];
                               });
-        } else if (motion.morphs[i]) {
-            bodies.flows[i] = true;
-        } else if (frame[i] != none) {
-            auto const of = static_cast<std::size_t>(frame[i]);
-            if (number[of] == static_body && rigid_above[of] && bodies.frames.size() <= most_bodies) {
-                number[of] = static_cast<BodyNumber>(bodies.frames.size());
-                bodies.frames.push_back(frame[i]);
+        } else if (motion.morphs[i] || frame[i] != none) {
+            std::size_t const of = frame[i] == none ? i : static_cast<std::size_t>(frame[i]);
+            bodies.body_of_node[i] = number_of(of);
+            bodies.flows[i] = motion.morphs[i] || !rigid_above[of] || number[of] == static_body;
+        }
+    }
+    bodies.body_of_joint.resize(scene.skins.size());
+    for (std::size_t i = 0; i < count; ++i) { // joints may come after what they move
+        Node const& node = scene.nodes[i];
+        if (!bodies.flows[i] || node.skin == none) {
+            continue;
+        }
+        Skin const& skin = scene.skins[static_cast<std::size_t>(node.skin)];
+        std::vector<BodyNumber>& of_joint = bodies.body_of_joint[static_cast<std::size_t>(node.skin)];
+        of_joint.resize(skin.joints.size(), static_body);
+        for (Primitive const& primitive : scene.meshes[static_cast<std::size_t>(node.mesh)].primitives) {
+            for (JointInfluence const& influence : primitive.influences) {
+                Index const nearest = frame[static_cast<std::size_t>(skin.joints[influence.joints[0]])];
+                if (nearest != none) {
+                    of_joint[influence.joints[0]] = number_of(static_cast<std::size_t>(nearest));
+                }
             }
-            bodies.body_of_node[i] = number[of];
-            bodies.flows[i] = number[of] == static_body;
         }
     }
     return bodies;

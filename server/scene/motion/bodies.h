@@ -2,6 +2,7 @@
 // poses.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -11,12 +12,16 @@
 namespace framelet {
 
 /// Nodes that keep their places relative to each other, whatever the time, are of one body. That is decided by
-/// structure: a node is of the body of the nearest node among itself and its ancestors that the clips move.
+/// structure: a node is of the body of the nearest node among itself and its ancestors that the clips move. What is
+/// skinned is carried by its joints, each triangle by the one that moves it most; what morphs by a body of its own
+/// where none carries it.
 struct SceneBodies {
-    /// Number of the body that carries each node: the static body for nodes that `flow` and those that draw nothing.
+    /// Number of the body that carries each node: the static body for skinned nodes and those that draw nothing.
     std::vector<BodyNumber> body_of_node;
-    /// Nodes whose meshes no body carries: skinned, morphing, carried by a transform that shears in the course of time,
-    /// or too many. Their samples have velocities. Only nodes that draw something.
+    /// Numbers of the bodies of joints, by skin and joint; those of joints that move no vertex most say nothing.
+    std::vector<std::vector<BodyNumber>> body_of_joint;
+    /// Nodes whose meshes do not just go with a body: skinned, morphing, carried by a transform that shears in the
+    /// course of time, or too many. Their samples drift. Only nodes that draw something.
     std::vector<bool> flows;
     /// Frames of the bodies by body number: the node whose world transform is the body's pose. `none` for the static
     /// body.
@@ -32,6 +37,9 @@ inline constexpr std::size_t most_bodies = 65535;
 /// Numbers the bodies in the order of their nodes; only those that draw something get a number, and no more than
 /// `most_bodies` of them.
 SceneBodies find_bodies(Scene const& scene, std::span<Index const> clips);
+
+/// The joint, as a position in its skin, that moves a triangle of a skinned primitive most.
+std::size_t joint_of(Primitive const& primitive, std::array<std::uint32_t, 3> const& triangle);
 
 /// Pose of the body in this pose of its scene. It is finite; its rotation has unit length.
 BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body);

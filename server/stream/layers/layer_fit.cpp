@@ -7,6 +7,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "common/framelet/sample_worth.h"
+#include "common/morton.h"
 #include "server/stream/layers/plane_search.h"
 
 namespace framelet {
@@ -17,10 +19,18 @@ constexpr std::size_t most_groups = 8;
 /// Metres; closer to the eye than this no depths are told apart.
 constexpr float least_depth = 1e-6f;
 
-/// Samples that may share a layer: of one body, or what deforms, or the sky.
+/// Seconds for which what drifts is taken to go on as its layer does.
+constexpr float drifting_seconds = 0.1f;
+/// Seconds after which nobody knows what deforms, however it does at present.
+constexpr float most_followed_seconds = 0.8f;
+/// Seconds of scene time less than which a drift is followed briefly: of the moments that what moves is held by none
+/// would show it for longer.
+constexpr float brief_seconds = 0.12f;
+
+/// Samples that may share a layer: of one body, of shadows that pass, or the sky.
 struct Group {
     BodyNumber body = static_body;
-    bool flows = false, sky = false;
+    bool is_shadow = false, sky = false;
 
     bool operator==(Group const&) const = default;
 };
@@ -29,8 +39,20 @@ BodyNumber body_of(Framelet const& framelet, int sample) {
     return framelet.body.empty() ? static_body : framelet.body[static_cast<std::size_t>(sample)];
 }
 
-Vec3 velocity_of(Framelet const& framelet, int sample) {
-    return framelet.velocity.empty() ? Vec3(0) : framelet.velocity[static_cast<std::size_t>(sample)];
+Drift drift_of(Framelet const& framelet, int sample) {
+    return framelet.drift.empty() ? Drift{} : framelet.drift[static_cast<std::size_t>(sample)];
+}
+
+/// Metres a second by which two drifts differ, as a mean over `drifting_seconds`.
+float difference(Drift const& a, Drift const& b) {
+    return glm::length(a.velocity - b.velocity) +
+           0.5f * drifting_seconds * glm::length(a.acceleration - b.acceleration);
+}
+
+/// Position of a sample (in Morton order) in its grid.
+Vec2 place_of(int sample) {
+    auto const i = static_cast<std::uint32_t>(sample);
+    return {static_cast<float>(morton_x(i)), static_cast<float>(morton_y(i))};
 }
 
 /// The grid's plane as the layer states it: in pixels from the tile's corner.
@@ -64,24 +86,29 @@ public:
 private:
     bool is_uniform() const {
         bool const one_body = std::ranges::all_of(framelet_.body, [&](BodyNumber b) { return b == framelet_.body[0]; });
-        return one_body && framelet_.velocity.empty();
+        return one_body && framelet_.drift.empty();
     }
     bool fit_one();
     void make_groups();
     void fit_groups();
     void set_candidates(std::size_t group);
-    void agree_on_velocity();
+    bool has_drift(std::size_t group) const { return !framelet_.drift.empty() && !groups_[group].sky; }
+    void agree_on_drift(Group const& group);
+    void fit_drift();
+    void drop_useless_drift();
+    float jerk_for(float seconds) const;
     void add_found(std::size_t group);
     void add_layer(GridPlane const& plane, float half_width, Group const& group);
     float error_of(Layer const& layer, float half_width) const;
     void take_isolated();
-    bool moves_with(Vec3 velocity, int sample, float tolerances = 1) const;
-    Vec3 median_velocity();
+    float off_drift(LayerDrift const& drift, int sample) const;
+    bool is_member(int sample) const { return found_.members[block_order(sample)] != 0; }
     std::uint8_t nearest_layer(int at) const;
     void collect();
 
     Framelet const& framelet_;
     float spacing_, tolerance_, velocity_tolerance_;
+    float pixel_; ///< side of a pixel at depth 1, metres
     GridFloats values_; ///< inverse depths
     std::array<Group, most_groups> groups_;
     std::size_t group_count_ = 0;
@@ -89,7 +116,7 @@ private:
     std::array<std::uint8_t, framelet_samples> group_of_, layer_of_;
     GridFloats candidates_;
     FoundPlane found_;
-    Vec3 velocity_{0}; ///< velocity of what was found
+    LayerDrift drift_; ///< of what was found
     std::array<GridPlane, max_layers> planes_; ///< of the layers, and which group each is of
     std::array<std::size_t, max_layers> layer_groups_{};
     FrameletShape& shape_;
@@ -97,7 +124,7 @@ private:
 
 Fitter::Fitter(Framelet const& framelet, float spacing, LayerTolerance const& tolerance, FrameletShape& shape)
     : framelet_(framelet), spacing_(spacing), velocity_tolerance_(tolerance.velocity * std::max(1.0f, spacing)),
-      shape_(shape) {
+      pixel_(tolerance.velocity * drifting_seconds / tolerated_pixels), shape_(shape) {
     std::array<float, framelet_samples> inverse;
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         float const depth = framelet.depth[i];
@@ -119,7 +146,7 @@ bool Fitter::fit_one() {
 }
 
 void Fitter::make_groups() {
-    if (framelet_.body.empty() && framelet_.velocity.empty()) {
+    if (framelet_.body.empty() && framelet_.drift.empty()) {
         groups_ = {Group{}, Group{static_body, false, true}};
         for (int i = 0; i < framelet_samples; ++i) {
             group_of_[static_cast<std::size_t>(i)] = values_[i] == 0 ? 1 : 0;
@@ -128,8 +155,8 @@ void Fitter::make_groups() {
     }
     for (int i = 0; i < framelet_samples; ++i) {
         bool const sky = values_[block_order(i)] == 0;
-        Group const group = sky ? Group{static_body, false, true}
-                                : Group{body_of(framelet_, i), velocity_of(framelet_, i) != Vec3(0), false};
+        BodyNumber const body = sky ? static_body : body_of(framelet_, i);
+        Group const group{body, !sky && is_shadow(body, drift_of(framelet_, i)), sky};
         std::size_t g = 0;
         while (g < group_count_ && groups_[g] != group) {
             ++g;
@@ -149,38 +176,131 @@ void Fitter::set_candidates(std::size_t group) {
     }
 }
 
-/// True where a sample (in Morton order) moves at nearly this velocity.
-bool Fitter::moves_with(Vec3 velocity, int sample, float tolerances) const {
-    float const off = glm::length(velocity_of(framelet_, sample) - velocity) * values_[block_order(sample)];
-    return off <= tolerances * velocity_tolerance_;
+/// How far a sample (in Morton order) goes otherwise than its layer does, as of `LayerTolerance::velocity`.
+float Fitter::off_drift(LayerDrift const& drift, int sample) const {
+    Vec2 const from_corner = (place_of(sample) + 0.5f) * spacing_;
+    return difference(drift.at(from_corner), drift_of(framelet_, sample)) * values_[block_order(sample)];
 }
 
-/// Median velocity of what was found, each component by itself: those few that move quite otherwise do not bend it.
-Vec3 Fitter::median_velocity() {
-    Vec3 median(0);
-    for (int axis = 0; axis < 3; ++axis) {
-        std::array<float, framelet_samples> values;
-        auto end = values.begin();
-        for (int i = 0; i < framelet_samples; ++i) {
-            if (found_.members[block_order(i)] != 0) {
-                *end++ = velocity_of(framelet_, i)[axis];
+/// Fits the drift of the members by least squares, affine in the grid; the same everywhere where they lie in one line.
+void Fitter::fit_drift() {
+    float count = 0;
+    Vec2 mean(0);
+    Drift sum;
+    for (int i = 0; i < framelet_samples; ++i) {
+        if (is_member(i)) {
+            Drift const own = drift_of(framelet_, i);
+            count += 1;
+            mean += place_of(i);
+            sum.velocity += own.velocity;
+            sum.acceleration += own.acceleration;
+        }
+    }
+    mean /= count;
+    drift_ = {};
+    Drift const middle{sum.velocity / count, sum.acceleration / count};
+    float xx = 0, xy = 0, yy = 0;
+    std::array<Drift, 2> moments;
+    for (int i = 0; i < framelet_samples; ++i) {
+        if (is_member(i)) {
+            Drift const own = drift_of(framelet_, i);
+            Vec2 const from = place_of(i) - mean;
+            xx += from.x * from.x;
+            xy += from.x * from.y;
+            yy += from.y * from.y;
+            for (int axis = 0; axis < 2; ++axis) {
+                Drift& moment = moments[static_cast<std::size_t>(axis)];
+                moment.velocity += from[axis] * (own.velocity - middle.velocity);
+                moment.acceleration += from[axis] * (own.acceleration - middle.acceleration);
             }
         }
-        auto const middle = values.begin() + (end - values.begin()) / 2;
-        std::nth_element(values.begin(), middle, end);
-        median[axis] = *middle;
     }
-    return median;
+    float const determinant = xx * yy - xy * xy;
+    constexpr float least_spread = 0.05f; // what lies nearly in a line says nothing of what is beside it
+    if (determinant > least_spread * (xx + yy) * (xx + yy) / 4) {
+        float const share = 1 / (determinant * spacing_);
+        auto const solve = [&](auto part, Vec3& dx, Vec3& dy) {
+            dx = share * (yy * (moments[0].*part) - xy * (moments[1].*part));
+            dy = share * (xx * (moments[1].*part) - xy * (moments[0].*part));
+        };
+        solve(&Drift::velocity, drift_.velocity_dx, drift_.velocity_dy);
+        solve(&Drift::acceleration, drift_.acceleration_dx, drift_.acceleration_dy);
+    }
+    Vec2 const at = (mean + 0.5f) * spacing_;
+    drift_.corner.velocity = middle.velocity - at.x * drift_.velocity_dx - at.y * drift_.velocity_dy;
+    drift_.corner.acceleration = middle.acceleration - at.x * drift_.acceleration_dx - at.y * drift_.acceleration_dy;
 }
 
-/// Keeps the members that move nearly as most do. At least one was found.
-void Fitter::agree_on_velocity() {
-    velocity_ = median_velocity();
-    found_.count = 0;
+/// Fits a drift to the members and keeps those that it holds for. It is fitted to those that are nearer to it than
+/// most, so that a few that go quite otherwise do not bend it.
+void Fitter::agree_on_drift(Group const& group) {
+    constexpr int most_fits = 3;
+    GridFloats const all = found_.members;
+    float most = 0; // as of `LayerTolerance::velocity`
+    for (int fits = 1; found_.count > 0 && fits <= most_fits; ++fits) {
+        fit_drift();
+        std::array<float, framelet_samples> offs;
+        auto end = offs.begin();
+        for (int i = 0; i < framelet_samples; ++i) {
+            if (all[block_order(i)] != 0) {
+                *end++ = off_drift(drift_, i);
+            }
+        }
+        auto const middle = offs.begin() + (end - offs.begin()) / 2;
+        std::nth_element(offs.begin(), middle, end);
+        bool const is_last = fits == most_fits || *std::max_element(middle, end) <= velocity_tolerance_;
+        most = is_last ? velocity_tolerance_ : std::max(velocity_tolerance_, *middle);
+        found_.count = 0;
+        for (int i = 0; i < framelet_samples; ++i) {
+            int const at = block_order(i);
+            found_.members.value[static_cast<std::size_t>(at)] =
+                all[at] != 0 && off_drift(drift_, i) <= most ? 1.0f : 0.0f;
+            found_.count += is_member(i) ? 1 : 0;
+        }
+        if (is_last) {
+            break;
+        }
+    }
+    // Nine in ten have no more jerk: a sample at a joint does not shorten the life of all.
+    std::array<float, framelet_samples> jerks;
+    auto end = jerks.begin();
     for (int i = 0; i < framelet_samples; ++i) {
-        float& member = found_.members[block_order(i)];
-        member = member != 0 && moves_with(velocity_, i) ? 1.0f : 0.0f;
-        found_.count += member != 0 ? 1 : 0;
+        if (is_member(i)) {
+            *end++ = drift_of(framelet_, i).jerk;
+        }
+    }
+    if (end != jerks.begin()) {
+        auto const high = jerks.begin() + (end - jerks.begin()) * 9 / 10;
+        std::nth_element(jerks.begin(), high, end);
+        drift_.corner.jerk = *high;
+        if (!group.is_shadow) { // which would count as a part of the ground
+            drop_useless_drift();
+        }
+        if (*high > 0) {
+            drift_.corner.jerk = std::max(drift_.corner.jerk, jerk_for(most_followed_seconds));
+        }
+    }
+}
+
+/// The jerk of which the framelet's nearest samples are followed for so long.
+float Fitter::jerk_for(float seconds) const {
+    return most_straying * pixel_ * 6 / (seconds * seconds * seconds * greatest(values_));
+}
+
+/// Drops the drift of what goes with its body so nearly that nobody sees a difference for twice `drifting_seconds`.
+void Fitter::drop_useless_drift() {
+    constexpr float unseen = 0.25f; // of the tolerance
+    float most = 0;
+    for (int i = 0; i < framelet_samples; ++i) {
+        if (is_member(i)) {
+            most = std::max(most, off_drift({}, i));
+        }
+    }
+    float const nearest = greatest(values_);
+    float const seconds = 2 * drifting_seconds;
+    if (most <= unseen * velocity_tolerance_ &&
+        drift_.corner.jerk * nearest * seconds * seconds / 6 <= unseen * velocity_tolerance_) {
+        drift_ = {};
     }
 }
 
@@ -200,9 +320,9 @@ void Fitter::fit_groups() {
         Group const& group = groups_[g];
         set_candidates(g);
         find_plane(values_, candidates_, tolerance_, found_);
-        velocity_ = Vec3(0);
-        if (group.flows && found_.count > 0) {
-            agree_on_velocity();
+        drift_ = {};
+        if (found_.count > 0 && has_drift(g)) {
+            agree_on_drift(group);
         }
         if (found_.count < least_plane_samples) {
             *largest = 0; // what is left of it stays outliers
@@ -228,7 +348,7 @@ void Fitter::add_found(std::size_t group) {
 
 void Fitter::add_layer(GridPlane const& plane, float half_width, Group const& group) {
     Layer layer = layer_of_plane(plane, group, spacing_);
-    layer.velocity = velocity_;
+    layer.drift = drift_;
     layer.error = error_of(layer, half_width);
     shape_.layers[shape_.layer_count++] = layer;
 }
@@ -263,7 +383,8 @@ void Fitter::take_isolated() {
         int const at = block_order(i);
         std::uint8_t& layer_of = layer_of_[static_cast<std::size_t>(at)];
         std::uint8_t const l = layer_of == FrameletShape::outlier ? nearest_layer(at) : FrameletShape::outlier;
-        if (l == FrameletShape::outlier || !moves_with(shape_.layers[l].velocity, i, isolated_tolerances)) {
+        if (l == FrameletShape::outlier ||
+            off_drift(shape_.layers[l].drift, i) > isolated_tolerances * velocity_tolerance_) {
             continue;
         }
         layer_of = l;
@@ -283,7 +404,7 @@ void Fitter::collect() {
     }
     for (int i = 0; i < framelet_samples; ++i) {
         if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::outlier) {
-            shape_.outliers.push_back({values_[block_order(i)], body_of(framelet_, i), velocity_of(framelet_, i)});
+            shape_.outliers.push_back({values_[block_order(i)], body_of(framelet_, i), drift_of(framelet_, i)});
         }
     }
 }
@@ -301,6 +422,32 @@ LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float s
         tolerance.preferred_inverse_depth = preferred;
     }
     return tolerance;
+}
+
+bool drifts_briefly(Framelet const& framelet, ImagePlane const& plane, FrameletShape const& shape, float focal) {
+    float const middle = 0.5f * static_cast<float>(plane.tile_side(framelet.tile));
+    int brief = 0, moving = 0;
+    auto const count = [&](bool moves, float jerk, float inverse_depth) {
+        bool const is_short = followed_seconds(jerk, inverse_depth * focal) < brief_seconds;
+        return std::pair(moves ? 1 : 0, is_short ? 1 : 0);
+    };
+    std::array<std::pair<int, int>, max_layers> of_layer;
+    for (std::size_t l = 0; l < shape.layer_count; ++l) {
+        Layer const& layer = shape.layers[l];
+        of_layer[l] =
+            count(moves(layer.body, layer.drift), layer.drift.corner.jerk, layer.at + middle * (layer.dx + layer.dy));
+    }
+    auto outlier = shape.outliers.begin();
+    for (std::uint8_t const layer : shape.layer_of) {
+        auto const [one_moves, one_is_brief] =
+            layer == FrameletShape::outlier
+                ? count(moves(outlier->body, outlier->drift), outlier->drift.jerk, outlier->inverse_depth)
+                : of_layer[layer];
+        outlier += layer == FrameletShape::outlier ? 1 : 0;
+        moving += one_moves;
+        brief += one_is_brief;
+    }
+    return 2 * brief > moving;
 }
 
 float median_depth(std::span<Framelet const> framelets) {

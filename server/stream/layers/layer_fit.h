@@ -18,7 +18,8 @@ inline constexpr float tolerated_pixels = 0.25f;
 struct LayerTolerance {
     /// 1 / metres. A sample that is off by e moves by e * (translation in metres) * (focal length in pixels) pixels.
     float inverse_depth = 0;
-    /// Speed times inverse depth, 1 / seconds, by which what deforms may move otherwise than its layer.
+    /// Speed times inverse depth, 1 / seconds, by which what drifts may go otherwise than its layer, for the tenth of a
+    /// second that `layer_tolerance` counts with.
     float velocity = 0;
     /// The tolerance that layers are fitted to first, 1 / metres; it stays where it leaves no more than
     /// `most_outliers`. 0: there is none.
@@ -37,6 +38,10 @@ inline constexpr float isolated_tolerances = 4;
 /// `median_depth` (metres, > 0) moves by 20 pixels, and what deforms moves on for a tenth of a second. Preferred: a
 /// tenth of a pixel, while the camera moves on as fast as it does for a fifth of a second. `speed`: metres a second.
 LayerTolerance layer_tolerance(float median_depth, ViewRays const& rays, float speed);
+
+/// True where the drift of something in a framelet is known for less than so many seconds of scene time.
+/// `focal`: focal length of its camera, pixels.
+bool drifts_briefly(Framelet const& framelet, ImagePlane const& plane, FrameletShape const& shape, float focal);
 
 /// Median of the finite depths in the framelets, metres, from a part of their samples; 1 where there are none.
 float median_depth(std::span<Framelet const> framelets);

@@ -54,8 +54,12 @@ void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t c
     float const found = median_depth(rendered);
     median_depth_ = median_depth_ > 0 ? median_depth_ + weight * (found - median_depth_) : found;
     LayerTolerance const tolerance = layer_tolerance(median_depth_, rays, speed_);
-    tbb::parallel_for(std::size_t{0}, sent_.size(),
-                      [&](std::size_t i) { fit_layers(rendered[sent_[i]], plane, tolerance, shapes[i]); });
+    float const focal = 1 / glm::length(rays.direction_dx);
+    tbb::parallel_for(std::size_t{0}, sent_.size(), [&](std::size_t i) {
+        Framelet const& framelet = rendered[sent_[i]];
+        fit_layers(framelet, plane, tolerance, shapes[i]);
+        shapes[i].is_brief = drifts_briefly(framelet, plane, shapes[i], focal);
+    });
 }
 
 void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,

@@ -35,7 +35,7 @@ struct Surfaces {
     std::vector<Framelet> framelets;
     std::vector<float> inverse_depth;
     std::vector<BodyNumber> body;
-    std::vector<Vec3> velocity;
+    std::vector<Drift> drift;
 
     std::size_t index(int x, int y) const {
         return static_cast<std::size_t>(y) * static_cast<std::size_t>(viewport.width) + static_cast<std::size_t>(x);
@@ -51,7 +51,7 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
     out.inverse_depth.resize(pixels);
     out.body.resize(pixels);
-    out.velocity.resize(pixels);
+    out.drift.resize(pixels);
     for (Framelet const& framelet : out.framelets) {
         PixelRect const rect = plane.tile_rect(framelet.tile);
         for (std::uint32_t i = 0; i < framelet_samples; ++i) {
@@ -60,7 +60,7 @@ Surfaces render_surfaces(BenchScene& scene, Camera const& camera, Viewport viewp
             if (x < viewport.width && y < viewport.height) {
                 out.inverse_depth[out.index(x, y)] = 1 / framelet.depth[i];
                 out.body[out.index(x, y)] = framelet.body.empty() ? static_body : framelet.body[i];
-                out.velocity[out.index(x, y)] = framelet.velocity.empty() ? Vec3(0) : framelet.velocity[i];
+                out.drift[out.index(x, y)] = framelet.drift.empty() ? Drift{} : framelet.drift[i];
             }
         }
     }
@@ -167,7 +167,7 @@ void compare(Surfaces const& before, Surfaces const& after, ExactMotion const& b
             ++found.pixels;
             found.all_holes += is_hole ? 1 : 0;
             ExactMotion::Projected const exact =
-                back.shown(pixel, after.inverse_depth[at], after.body[at], after.velocity[at]);
+                back.shown(pixel, after.inverse_depth[at], after.body[at], after.drift[at]);
             if (!shows(before, exact, after.body[at])) {
                 continue;
             }
@@ -207,7 +207,7 @@ void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::spa
         Surfaces const after = render_surfaces(scene, moved, viewport);
         WarpPlan plans[2];
         for (int shift = 0; shift < 2; ++shift) {
-            plans[shift].make(caches[shift], 0, true, moved, later, motions);
+            plans[shift].make(caches[shift], 0, {}, moved, later, motions);
         }
         ExactMotion const back(bodies, {scene.pose, moved}, {pose, camera}, viewport);
         compare(before, after, back, plans, found[i]);

@@ -26,7 +26,7 @@ ExactMotion::ExactMotion(SceneBodies const& bodies, SceneView const& from, Scene
 }
 
 ExactMotion::Projected ExactMotion::shown(Vec2 position, float inverse_depth, BodyNumber body,
-                                          Vec3 const& velocity) const {
+                                          Drift const& drift) const {
     Vec3 const direction = rays_.direction + rays_.direction_dx * position.x + rays_.direction_dy * position.y;
     // Vector from the second eye to the point, times the inverse depth; for the sky the direction alone.
     Vec3 towards = direction;
@@ -37,7 +37,7 @@ ExactMotion::Projected ExactMotion::shown(Vec2 position, float inverse_depth, Bo
             Vec3 const in_body = (glm::conjugate(before.rotation) * (point - before.translation)) / before.scale;
             point = after.rotation * (after.scale * in_body) + after.translation;
         }
-        towards = (point + velocity * seconds_ - eye_) * inverse_depth;
+        towards = (point + drift.after(seconds_) - eye_) * inverse_depth;
     }
     Vec3 const p = to_pixels_ * towards;
     return p.z > nearest ? Projected{Vec2(p) / p.z, inverse_depth / p.z} : Projected{};

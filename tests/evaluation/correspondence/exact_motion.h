@@ -27,8 +27,8 @@ public:
     };
 
     /// The projection to the second view of the point seen in the first at `position` (pixels) with that inverse depth
-    /// (1/m; 0: the sky), carried by `body`. A point that no body carries moves on by `velocity`, metres a second.
-    Projected shown(Vec2 position, float inverse_depth, BodyNumber body, Vec3 const& velocity) const;
+    /// (1/m; 0: the sky), carried by `body`, with that drift besides.
+    Projected shown(Vec2 position, float inverse_depth, BodyNumber body, Drift const& drift) const;
 
 private:
     float seconds_; ///< time from the first view to the second, seconds
