@@ -34,13 +34,13 @@ TEST(ExactMotion, FollowsCameraAndBody) {
     Camera moved = camera;
     moved.position.x = 1;
     ExactMotion const body(bodies, {before, camera}, {after, camera}, viewport);
-    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 1, Vec3(0)).pixel.x, 75, 1e-3f);
-    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 0, Vec3(0)).pixel.x, 50, 1e-3f);
-    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 0, Vec3(0, 2, 0)).pixel.y, 25, 1e-3f);
+    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 1, {}).pixel.x, 75, 1e-3f);
+    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 0, {}).pixel.x, 50, 1e-3f);
+    EXPECT_NEAR(body.shown({50, 50}, 0.25f, 0, {Vec3(0, 2, 0)}).pixel.y, 25, 1e-3f);
     ExactMotion const eye(bodies, {before, camera}, {before, moved}, viewport);
-    EXPECT_NEAR(eye.shown({50, 50}, 0.25f, 0, Vec3(0)).pixel.x, 25, 1e-3f);
-    EXPECT_NEAR(eye.shown({50, 50}, 0.25f, 0, Vec3(0)).inverse_depth, 0.25f, 1e-6f);
-    EXPECT_NEAR(eye.shown({50, 50}, 0, 0, Vec3(0)).pixel.x, 50, 1e-3f);
+    EXPECT_NEAR(eye.shown({50, 50}, 0.25f, 0, {}).pixel.x, 25, 1e-3f);
+    EXPECT_NEAR(eye.shown({50, 50}, 0.25f, 0, {}).inverse_depth, 0.25f, 1e-6f);
+    EXPECT_NEAR(eye.shown({50, 50}, 0, 0, {}).pixel.x, 50, 1e-3f);
 }
 
 } // namespace
