@@ -202,8 +202,8 @@ FrameletShape documented_shape() {
     FrameletShape shape;
     shape.layer_count = 2;
     shape.decorrelation = 90;
-    shape.layers[0] = {0.5f, 0.0078125f, -0.015625f, 0.001f, static_body, Vec3(0)};
-    shape.layers[1] = {0.25f, 0, 0, 0, 258, Vec3(0)};
+    shape.layers[0] = {0.5f, 0.0078125f, -0.015625f, 0.001f, static_body, {}};
+    shape.layers[1] = {0.25f, 0, 0, 0, 258, {}};
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         std::uint32_t const x = morton_x(i);
         shape.layer_of[i] = x < 4 ? 0 : x < 15 ? 1 : FrameletShape::outlier;
