@@ -42,8 +42,8 @@ void add_shapes(Batch& batch) {
     for (std::size_t i = 0; i < batch.framelets.size(); ++i) {
         FrameletShape& shape = batch.shapes.emplace_back();
         shape.layer_count = 2;
-        shape.layers[0] = {0.25f, 0.001f, 0, 0.0001f, static_body, Vec3(0)};
-        shape.layers[1] = {0.5f, 0, 0.002f, 0.0001f, 1, Vec3(i % 2 == 0 ? 1 : 0)};
+        shape.layers[0] = {0.25f, 0.001f, 0, 0.0001f, static_body, {}};
+        shape.layers[1] = {0.5f, 0, 0.002f, 0.0001f, 1, {{Vec3(i % 2 == 0 ? 1 : 0)}, {}, {}, {}, {}}};
         for (std::uint32_t k = 0; k < framelet_samples; ++k) {
             shape.layer_of[k] = morton_x(k) < 1 + i % 15 ? 0 : 1;
         }

@@ -111,7 +111,7 @@ struct AnalyticScene {
             }
             if (layer == max_layers || all_outliers) {
                 shape.layer_of[i] = FrameletShape::outlier;
-                Outlier outlier{static_cast<float>(hit.inverse_depth), static_body, Vec3(0)};
+                Outlier outlier{static_cast<float>(hit.inverse_depth), static_body, {}};
                 if (hit.quad >= 0) {
                     outlier.body = placed[static_cast<std::size_t>(hit.quad)].body;
                     outlier.drift.velocity = Vec3(placed[static_cast<std::size_t>(hit.quad)].velocity);

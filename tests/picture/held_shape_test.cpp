@@ -71,7 +71,7 @@ TEST(HeldShape, FineSamplesAreReducedToTheLayerThatMostOfAPixelLieOn) {
         }
         count += mixed.shape.layer_of[i] == FrameletShape::outlier ? 1 : 0;
     }
-    mixed.shape.outliers.assign(count, {2, static_body, Vec3(0)});
+    mixed.shape.outliers.assign(count, {2, static_body, {}});
     mixed.shape.outliers.back().inverse_depth = 5;
     hold(mixed.framelet, &mixed.shape, 2, samples, held);
     EXPECT_EQ(held.side, 8);

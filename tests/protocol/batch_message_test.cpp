@@ -37,7 +37,7 @@ Batch small_batch() {
     batch.shapes[1].layer_count = 2;
     batch.shapes[1].decorrelation = 90;
     batch.shapes[1].layers[0].at = 0.5f;
-    batch.shapes[1].layers[1] = {1, 0.0078125f, 0, 0x1p-9f, 3, Vec3(0)}; // its error is the unit of its plane
+    batch.shapes[1].layers[1] = {1, 0.0078125f, 0, 0x1p-9f, 3, {}}; // its error is the unit of its plane
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
         batch.shapes[1].layer_of[i] = morton_x(i) < 5 ? 0 : 1;
     }

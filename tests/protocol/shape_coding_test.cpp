@@ -229,7 +229,7 @@ TEST(ShapeCoding, GoldenBytes) {
 TEST(ShapeCoding, APlaneGoesOnInTilesOfAnySizeAndUnit) {
     // The plane is w = 0.5 + x / 128 - y / 64 from the corner of a tile of 16 pixels at (32, 48).
     TilePosition const from{32, 48, 4};
-    CodedLayer const layer{quantise({0.5f, 0.0078125f, -0.015625f, 0, static_body, Vec3(0)}, 4), static_body, from};
+    CodedLayer const layer{quantise({0.5f, 0.0078125f, -0.015625f, 0, static_body, {}}, 4), static_body, from};
     for (std::int32_t side_bits = 2; side_bits <= 7; ++side_bits) {
         for (int const finer : {-2, 0, 3}) {
             TilePosition const to{32 + 64, 48 + 8, side_bits};
@@ -268,7 +268,7 @@ TEST(ShapeCoding, PlanesOfNeighboursCostLittle) {
                            -2e-5f,
                            1e-5f,
                            static_body,
-                           Vec3(0)};
+                           {}};
     }
     EXPECT_LT(bytes_of(shapes, side_bits).size(), 128u * 4);
 }
