@@ -207,6 +207,12 @@ private:
             discard();
             return;
         }
+        auto const is_text = [](std::uint8_t c) { return c >= ' ' && c < 0x7f; };
+        if (length > max_body_ && first_ && std::all_of(prefix_.begin(), prefix_.end(), is_text)) {
+            std::string const said(reinterpret_cast<char const*>(prefix_.data()), prefix_.size());
+            refuse("the other side is no framelet program, it says \"" + said + "\": is that the right port?");
+            return;
+        }
         if (length > max_body_) {
             refuse("a message of " + std::to_string(length) + " bytes exceeds the limit of " +
                    std::to_string(max_body_) + hint());

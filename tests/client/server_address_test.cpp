@@ -20,10 +20,19 @@ TEST(ServerAddress, IsReadAsWritten) {
     EXPECT_EQ(parse_address("localhost:80", 14158), (ServerAddress{"localhost", 80}));
 }
 
+TEST(ServerAddress, IsTakenOutOfAUrl) {
+    for (char const* const text : {"http://host:80", "https://host:80/", "http://me@host:80/scene?x=1#y", "host:80/a:b",
+                                   " host:80\n", "me@host:80", "framelet://host:80"}) {
+        EXPECT_EQ(parse_server_address(text), (ServerAddress{"host", 80})) << text;
+    }
+    EXPECT_EQ(parse_server_address("http://host/"), (ServerAddress{"host", default_port}));
+    EXPECT_EQ(parse_server_address("https://[::1]:80/"), (ServerAddress{"::1", 80}));
+}
+
 TEST(ServerAddress, AnythingElseIsRefused) {
     for (char const* const text :
          {"", ":", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1", "a b:7070", "::1:7070", "[::1",
-          "[::1]:", "[]", "[::1]x:7070", "[]:7070", "host:+5"}) {
+          "[::1]:", "[]", "[::1]x:7070", "[]:7070", "host:+5", "http://", "me@", "/host"}) {
         EXPECT_THROW(parse_server_address(text), InputError) << text;
     }
 }

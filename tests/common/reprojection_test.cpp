@@ -81,7 +81,7 @@ TEST(Reprojection, PlanesAreExactUnderTranslation) {
     far_away.display.position += Vec3(0.25f, 0.125f, -0.5f);
     far_away.from = make_view_rays(far_away.source, viewport);
     far_away.to = make_view_rays(far_away.display, viewport);
-    Layer const layer{0.125f, 1e-5f, -2e-5f, 0, static_body, Vec3(0)};
+    Layer const layer{0.125f, 1e-5f, -2e-5f, 0, static_body, {}};
     auto const plane = make_plane_transform(make_view_transform(far_away.from, far_away.to), layer, {320, 160});
     ASSERT_TRUE(plane);
     glm::dvec3 const mapped = plane->to_display * glm::dvec3(8, 8, 1);

@@ -126,6 +126,14 @@ TEST_F(FramedStreamTest, LargestPrefixIsRefused) {
     EXPECT_EQ(end.wait_for_close(), "a message of 4294967295 bytes exceeds the limit of 67108864");
 }
 
+TEST_F(FramedStreamTest, AnotherProgramIsSaidToBeOne) {
+    end.start(thread_);
+    Bytes answer(4);
+    std::memcpy(answer.data(), "HTTP", 4);
+    write(answer);
+    EXPECT_EQ(end.wait_for_close(), "the other side is no framelet program, it says \"HTTP\": is that the right port?");
+}
+
 TEST_F(FramedStreamTest, LimitCanChange) {
     end.start(thread_, 100);
     boost::asio::post(thread_.io, [stream = end.stream] { stream->set_max_body(10000); });

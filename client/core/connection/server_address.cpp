@@ -16,9 +16,24 @@ ServerAddress parse_server_address(std::string const& text) {
     return parse_address(text, default_port);
 }
 
-ServerAddress parse_address(std::string const& text, std::uint16_t port_without) {
+namespace {
+
+/// What of the text is HOST[:PORT]: without blanks around it, and of a URL neither scheme nor user nor path.
+std::string without_url(std::string text) {
+    text.erase(0, text.find_first_not_of(" \t\r\n"));
+    text.erase(text.find_last_not_of(" \t\r\n") + 1);
+    std::size_t const scheme = text.find("://");
+    text.erase(0, scheme == std::string::npos ? 0 : scheme + 3);
+    text.erase(std::min(text.find_first_of("/?#"), text.size()));
+    return text.substr(text.find('@') + 1);
+}
+
+} // namespace
+
+ServerAddress parse_address(std::string const& from, std::uint16_t port_without) {
+    std::string const text = without_url(from);
     auto const fail = [&](char const* what) {
-        return InputError("cannot use \"" + text + "\" as a server: " + what +
+        return InputError("cannot use \"" + from + "\" as a server: " + what +
                           ": write HOST or HOST:PORT, as in 127.0.0.1:" + std::to_string(port_without));
     };
     ServerAddress out;

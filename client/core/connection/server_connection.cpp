@@ -11,9 +11,9 @@
 #include <thread>
 #include <utility>
 
-#include <boost/asio/connect.hpp>
 #include <boost/asio/steady_timer.hpp>
 
+#include "client/core/connection/address_race.h"
 #include "client/core/connection/back_off.h"
 #include "client/core/connection/token_route.h"
 #include "common/error.h"
@@ -50,7 +50,7 @@ struct ServerConnection::Impl {
     std::string server; ///< its address, for messages
     asio::io_context io;
     asio::ip::tcp::resolver resolver{io};
-    asio::ip::tcp::socket socket{io};
+    AddressRace race{io};
     asio::steady_timer deadline{io}, watch{io}, pause{io};
     std::shared_ptr<asio::ssl::context> tls;
     std::promise<void> opened;
@@ -102,8 +102,7 @@ struct ServerConnection::Impl {
         resolver.cancel();
         deadline.cancel();
         watch.cancel();
-        boost::system::error_code ignored;
-        socket.close(ignored);
+        race.cancel();
         if (attempted) {
             attempted->close();
         }
@@ -168,11 +167,13 @@ struct ServerConnection::Impl {
     }
 
     void begin() {
+        attempted.reset();
         deadline.expires_after(duration_of(options.connect_seconds));
         deadline.async_wait(heard([this](boost::system::error_code error) {
             if (!error) {
                 end("cannot connect to " + server + ": no answer within " + seconds_text(options.connect_seconds) +
-                    ": check the address, and whether a firewall is in the way");
+                    (attempted ? ": something takes connections there, but is it a framelet-server?"
+                               : ": check the address, and whether a firewall is in the way"));
             }
         }));
         resolver.async_resolve(options.server.host, std::to_string(options.server.port),
@@ -185,21 +186,25 @@ struct ServerConnection::Impl {
                                }));
     }
 
-    void connect(asio::ip::tcp::resolver::results_type const& endpoints) {
-        asio::async_connect(
-            socket, endpoints, heard([this](boost::system::error_code error, asio::ip::tcp::endpoint const& endpoint) {
-                if (error == asio::error::connection_refused) {
-                    end("cannot connect to " + server + ": connection refused: is framelet-server running there?");
-                } else if (error) {
-                    end("cannot connect to " + server + ": " + error.message());
-                } else if (!may_send_token(options, endpoint.address())) {
-                    end("the token is not sent to " + server +
-                            " in clear: use --tls, or --insecure if you know that nobody can listen",
-                        Retry::never);
-                } else {
-                    shake_hands(token_for(endpoint));
-                }
-            }));
+    void connect(asio::ip::tcp::resolver::results_type const& found) {
+        std::vector<asio::ip::tcp::endpoint> const addresses(found.begin(), found.end());
+        race.start(addresses, heard([this](boost::system::error_code error, asio::ip::tcp::socket socket) {
+                       if (error == asio::error::connection_refused) {
+                           end("cannot connect to " + server +
+                               ": connection refused: is framelet-server running there?");
+                           return;
+                       }
+                       auto const address = error ? asio::ip::tcp::endpoint() : socket.remote_endpoint(error);
+                       if (error) {
+                           end("cannot connect to " + server + ": " + error.message());
+                       } else if (!may_send_token(options, address.address())) {
+                           end("the token is not sent to " + server +
+                                   " in clear: use --tls, or --insecure if you know that nobody can listen",
+                               Retry::never);
+                       } else {
+                           shake_hands(std::move(socket), token_for(address));
+                       }
+                   }));
     }
 
     /// The token that the user gave, or the one that a server of the same user on this machine has left for its
@@ -211,7 +216,7 @@ struct ServerConnection::Impl {
         return read_local_token(ServerAddress{endpoint.address().to_string(), endpoint.port()}.text());
     }
 
-    void shake_hands(std::string const& token) {
+    void shake_hands(asio::ip::tcp::socket socket, std::string const& token) {
         attempted = options.tls ? tls_client_stream(std::move(socket), tls, options.server.host)
                                 : plain_stream(std::move(socket));
         FramedStream::Handlers events;
@@ -223,7 +228,7 @@ struct ServerConnection::Impl {
             }
             end(open ? "the connection to the server at " + server + " ended: " + reason
                      : "cannot connect to " + server + ": it did not open a session: " + reason +
-                           (options.tls ? "" : ": does it want --tls, or has it no room?"));
+                           (options.tls || reason.ends_with('?') ? "" : ": does it want --tls, or has it no room?"));
         });
         events.on_sent = heard([this](std::size_t) {
             if (open) {

@@ -5,15 +5,21 @@
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include "common/color.h"
+#include "common/counted.h"
 #include "common/error.h"
+#include "server/scene/assimp/assimp_mend.h"
 #include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/assimp/memory_limit.h"
 #include "server/scene/assimp/mesh_header.h"
+#include "server/scene/assimp/mtl_text.h"
 #include "server/scene/assimp/polygon.h"
+#include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/held_exception.h"
 
 namespace framelet {
@@ -23,25 +29,16 @@ namespace {
 /// cannot fit is thus refused before it is read.
 constexpr std::uint64_t memory_per_file_byte = 8;
 
-/// What Assimp does once a file is read; of how far it is in one of these it says nothing.
-struct LastStep {
-    char const* name;
-    unsigned flags;
-};
-constexpr LastStep last_steps[] = {
-    {"smoothing normals", aiProcess_FlipUVs | aiProcess_TransformUVCoords | aiProcess_GenSmoothNormals},
-    {"joining vertices", aiProcess_JoinIdenticalVertices},
-};
-
 /// Normals of a file without any are smooth across edges up to this angle.
 constexpr float crease_degrees = 66;
 
-/// Opens the scene file and what the folder permits. Notes which files could not be opened: Assimp only mentions them
-/// in its log.
+/// Opens the scene file and what the folder permits; material files of an .obj as their readable lines. Notes which
+/// files could not be opened: Assimp only mentions them in its log.
 class PermittedFiles : public Assimp::DefaultIOSystem {
 public:
-    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing)
-        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing) {}
+    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing,
+                   MtlRemarks& mtl)
+        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing), mtl_(mtl) {}
 
     bool Exists(char const* file) const override { return is_readable(file); }
 
@@ -49,8 +46,10 @@ public:
         Assimp::IOStream* const stream = is_readable(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
         if (!stream) {
             missing_.emplace_back(file);
+            return nullptr;
         }
-        return stream;
+        bool const is_mtl = file != scene_file_ && lower_extension(scene_file_) == ".obj";
+        return is_mtl ? cleaned(stream, file) : stream;
     }
 
 private:
@@ -60,9 +59,20 @@ private:
         return (file == scene_file_ || folder_.permits(file)) && std::filesystem::is_regular_file(file, code);
     }
 
+    Assimp::IOStream* cleaned(Assimp::IOStream* stream, std::filesystem::path const& file) {
+        std::string text(stream->FileSize(), '\0');
+        text.resize(stream->Read(text.data(), 1, text.size()));
+        Close(stream);
+        std::string const clean = clean_mtl(text, file.filename().string(), mtl_);
+        auto* const bytes = new std::uint8_t[clean.size()]; // the stream owns and deletes them
+        std::copy(clean.begin(), clean.end(), bytes);
+        return new Assimp::MemoryIOStream(bytes, clean.size(), true);
+    }
+
     std::string scene_file_;
     SceneFolder const& folder_;
     std::vector<std::string>& missing_;
+    MtlRemarks& mtl_;
 };
 
 /// Hands on how far Assimp is. Where that throws, Assimp is told to stop; not all of its readers look at that.
@@ -88,13 +98,21 @@ Vec3 to_vec3(aiVector3D const& v) {
     return {v.x, v.y, v.z};
 }
 
-/// Replaces polygons by triangles and drops points and lines. Assimp's own step leaves holes in polygons that cross
-/// themselves (24 triangles of 116,501 in one model tried).
-void triangulate_faces(aiMesh& mesh) {
+/// Faces that are no surfaces.
+struct LeftOut {
+    std::size_t points = 0;
+    std::size_t lines = 0;
+};
+
+/// Replaces polygons by triangles; drops points and lines, and counts them. Assimp's own step leaves holes in polygons
+/// that cross themselves (24 triangles of 116,501 in one model tried).
+void triangulate_faces(aiMesh& mesh, LeftOut& left_out) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> corners;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
         aiFace const& face = mesh.mFaces[f];
+        left_out.points += face.mNumIndices == 1;
+        left_out.lines += face.mNumIndices == 2;
         corners.clear();
         for (unsigned i = 0; i < face.mNumIndices; ++i) {
             corners.push_back(to_vec3(mesh.mVertices[face.mIndices[i]]));
@@ -130,12 +148,13 @@ Primitive import_assimp_primitive(aiMesh const& from) {
     primitive.normals = vectors(from.mNormals);
     for (std::size_t set = 0; set < 2; ++set) {
         for (Vec3 const& uv : vectors(from.mTextureCoords[set])) {
-            primitive.uv[set].emplace_back(uv);
+            primitive.uv[set].emplace_back(uv.x, 1 - uv.y); // Assimp's v goes upwards
         }
     }
     for (std::size_t i = 0; from.mColors[0] && i < count; ++i) {
-        aiColor4D const& color = from.mColors[0][i];
-        primitive.colors.emplace_back(color.r, color.g, color.b, color.a);
+        aiColor4D const& color = from.mColors[0][i]; // as it is displayed, in these formats
+        primitive.colors.emplace_back(linear_from_srgb(color.r), linear_from_srgb(color.g), linear_from_srgb(color.b),
+                                      color.a);
     }
     for (unsigned t = 0; t < from.mNumAnimMeshes; ++t) {
         aiAnimMesh const& shape = *from.mAnimMeshes[t]; // whole positions, not offsets
@@ -163,6 +182,8 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
                     Progress const& progress, bool is_checked) {
     Scene scene;
     std::vector<std::string> missing;
+    MtlRemarks mtl;
+    LeftOut left_out;
     progress("reading", 0);
     Assimp::Importer importer;
     std::string const extension = file.extension().string();
@@ -172,7 +193,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     check_mesh_header(file);
     ImportBudget(budget).reserve(std::filesystem::file_size(file), memory_per_file_byte);
     HeldException held;
-    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing)); // owned by the importer
+    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing, mtl)); // owned by the importer
     importer.SetProgressHandler(new ReadingProgress(progress, held)); // as well
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -183,17 +204,24 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
             limit.emplace(budget.left()); // Assimp takes memory without asking
         }
         from = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+        std::vector<std::vector<aiVector3D>> normals; // those of each mesh that are kept beside new ones
         if (from && held.call([&] { progress("triangulating", 0); })) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
-                triangulate_faces(*from->mMeshes[m]);
+                normals.push_back(take_normals(*from->mMeshes[m]));
+                triangulate_faces(*from->mMeshes[m], left_out);
                 held.call([&] { progress("triangulating", (m + 1.0) / from->mNumMeshes); });
             }
         }
-        for (LastStep const& step : last_steps) {
-            if (from && held.call([&] { progress(step.name, 0); })) {
-                from = importer.ApplyPostProcessing(step.flags);
-                held.call([&] { progress(step.name, 1); });
+        // Of how far it is in one of these Assimp says nothing.
+        if (from && held.call([&] { progress("smoothing normals", 0); })) {
+            from = importer.ApplyPostProcessing(aiProcess_GenSmoothNormals);
+            for (unsigned m = 0; from && m < from->mNumMeshes; ++m) {
+                put_back_normals(*from->mMeshes[m], normals[m]);
             }
+        }
+        if (from && held.call([&] { progress("joining vertices", 0); })) {
+            from = importer.ApplyPostProcessing(aiProcess_JoinIdenticalVertices);
+            held.call([&] { progress("joining vertices", 1); });
         }
     } catch (std::bad_alloc const&) {
         throw budget.too_large();
@@ -205,6 +233,9 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
         std::string const why = importer.GetErrorString();
         if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
             throw budget.too_large();
+        }
+        if (why.find("contains no faces") != std::string::npos) { // a cloud of points
+            throw InputError("it has no surfaces, and only these are shown");
         }
         throw InputError(why.empty() ? "it has no content" : why);
     }
@@ -218,6 +249,15 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
             folder.permits(name) ? "file '" + name + "' is missing" : SceneFolder::refusal("file", name);
         scene.warnings.push_back(problem + "; shown without it");
     }
+    scene.warnings.insert(scene.warnings.end(), mtl.warnings.begin(), mtl.warnings.end());
+    for (auto const& [count, what] : {std::pair(left_out.points, "point"), std::pair(left_out.lines, "line")}) {
+        if (count > 0) {
+            scene.warnings.push_back(counted(count, what) + (count == 1 ? " is" : " are") +
+                                     " not shown: only surfaces are");
+        }
+    }
+    place_by_settings(*from);
+    add_transforms(*from, mtl);
     import_assimp_materials(*from, folder, budget, scene, progress);
     import_assimp_nodes(*from, budget, scene);
     return scene;

@@ -73,6 +73,19 @@ struct Images {
     }
 };
 
+/// Puts a transform of coordinates whose v goes upwards (scaled, turned about the middle, moved) into `use`, of
+/// coordinates whose v goes downwards.
+void set_transform(TextureUse& use, aiUVTransform const& from) {
+    Vec2 const scale(from.mScaling.x, from.mScaling.y);
+    float const sine = std::sin(from.mRotation);
+    float const cosine = std::cos(from.mRotation);
+    Vec2 const corner = Vec2(0, 1) * scale - 0.5f; // what (0, 0) is with v upwards, seen from the middle
+    use.scale = scale;
+    use.rotation = from.mRotation;
+    use.offset = Vec2(0.5f + cosine * corner.x - sine * corner.y + from.mTranslation.x,
+                      0.5f - sine * corner.x - cosine * corner.y - from.mTranslation.y);
+}
+
 Wrap wrap_of(aiTextureMapMode mode) {
     return mode == aiTextureMapMode_Clamp || mode == aiTextureMapMode_Decal ? Wrap::clamp
            : mode == aiTextureMapMode_Mirror                                ? Wrap::mirror
@@ -81,6 +94,7 @@ Wrap wrap_of(aiTextureMapMode mode) {
 
 struct MaterialReader {
     aiMaterial const& from;
+    bool is_on_colors; ///< of vertices
     Images& images;
     Scene& scene;
 
@@ -95,9 +109,8 @@ struct MaterialReader {
     }
 
     Vec3 color(char const* key, unsigned type, unsigned index, Vec3 const& otherwise) const {
-        aiColor3D value(otherwise.x, otherwise.y, otherwise.z);
-        from.Get(key, type, index, value);
-        return {value.r, value.g, value.b};
+        aiColor3D value; // which becomes black where there is none
+        return from.Get(key, type, index, value) == aiReturn_SUCCESS ? Vec3(value.r, value.g, value.b) : otherwise;
     }
 
     /// The first texture of the first of the types that the material has.
@@ -117,6 +130,10 @@ struct MaterialReader {
             texture.wrap_v = wrap_of(modes[1]);
             use.texture = static_cast<Index>(scene.textures.size());
             use.uv_set = static_cast<int>(std::min(uv_set, 1u));
+            aiUVTransform transform;
+            if (from.Get(AI_MATKEY_UVTRANSFORM(type, 0), transform) == aiReturn_SUCCESS) {
+                set_transform(use, transform);
+            }
             scene.textures.push_back(texture);
             break;
         }
@@ -148,6 +165,9 @@ struct MaterialReader {
         Vec3 diffuse = color(AI_MATKEY_COLOR_DIFFUSE, Vec3(textured ? 1.0f : 0.6f));
         if (physical) {
             diffuse = color(AI_MATKEY_BASE_COLOR, diffuse);
+        }
+        if (is_on_colors && material.name == AI_DEFAULT_MATERIAL_NAME) { // Assimp's grey, not the file's
+            diffuse = Vec3(1);
         }
         if (textured && diffuse == Vec3(0)) { // written by programs for which a texture replaces the colour
             diffuse = Vec3(1);
@@ -185,10 +205,10 @@ void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity, 
     Texture texture =
         scene.textures[static_cast<std::size_t>(base == none ? opacity.texture : material.base_color_texture.texture)];
     texture.image = found->second;
-    int const uv_set = base == none ? opacity.uv_set : material.base_color_texture.uv_set;
-    material.base_color_texture = {};
+    if (base == none) {
+        material.base_color_texture = opacity;
+    }
     material.base_color_texture.texture = static_cast<Index>(scene.textures.size());
-    material.base_color_texture.uv_set = uv_set;
     scene.textures.push_back(texture);
     if (material.alpha_mode == AlphaMode::opaque) {
         material.alpha_mode =
@@ -202,8 +222,14 @@ void import_assimp_materials(aiScene const& from, SceneFolder const& folder, Imp
                              Progress const& progress) {
     Images images{from, folder, budget, {}, {}};
     std::vector<TextureUse> opacity;
+    std::vector<bool> is_on_colors(from.mNumMaterials);
+    for (unsigned m = 0; m < from.mNumMeshes; ++m) {
+        if (from.mMeshes[m]->mColors[0]) {
+            is_on_colors[from.mMeshes[m]->mMaterialIndex] = true;
+        }
+    }
     for (unsigned i = 0; i < from.mNumMaterials; ++i) {
-        MaterialReader reader{*from.mMaterials[i], images, scene};
+        MaterialReader reader{*from.mMaterials[i], is_on_colors[i], images, scene};
         scene.materials.push_back(reader.read());
         opacity.push_back(reader.texture({aiTextureType_OPACITY}));
     }
