@@ -85,6 +85,34 @@ TEST(FrameletPool, TheMomentGoesOfWhichLeastShows) {
     EXPECT_TRUE(cameras(pool).contains(100)) << "what has hardly been shown stays";
 }
 
+/// A framelet that drifts to the right, before the same camera at any time.
+Batch drifting(std::uint64_t number, SceneTime time, bool is_brief) {
+    Batch batch = seen_from(1, number, small_tile);
+    batch.scene_time = time;
+    FrameletShape shape;
+    shape.layer_count = 1;
+    shape.layers[0].at = 0.1f;
+    shape.layers[0].drift.corner.velocity = Vec3(1, 0, 0);
+    shape.is_brief = is_brief;
+    batch.shapes = {shape};
+    return batch;
+}
+
+TEST(FrameletPool, WhatDriftsBrieflyIsReplacedInItsPlace) {
+    for (bool const is_brief : {false, true}) {
+        FrameletPool pool(plane);
+        for (std::uint64_t number = 1; number <= 3; ++number) {
+            Batch const batch = drifting(number, 0.1 * static_cast<double>(number), is_brief);
+            EXPECT_EQ(pool.begins_moment(batch, {}), number == 1 || !is_brief);
+            pool.insert(batch, {});
+        }
+        EXPECT_EQ(pool.framelet_count(), is_brief ? 1U : 3U);
+        CachedFramelet const* const newest = pool.newest().find(plane.pixel_depth(), 1, 2);
+        ASSERT_TRUE(newest);
+        EXPECT_EQ(newest->moment.batch, is_brief ? 3U : 1U);
+    }
+}
+
 TEST(FrameletPool, HoldsAsManyMomentsAsItIsTold) {
     FrameletPool pool(plane, 4);
     for (std::uint64_t camera = 1; camera <= 9; ++camera) {

@@ -75,6 +75,25 @@ TEST(Mirror, AnOldShadowDoesNotShowBeforeWhatIsCoarser) {
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
 }
 
+TEST(Mirror, WhatDriftsBrieflyIsReplacedInItsPlace) {
+    for (bool const is_brief : {false, true}) {
+        Mirror mirror(viewport);
+        for (int coarser : {0, 1}) {
+            double const time = 1 + 0.1 * coarser;
+            std::vector<Piece> pieces = render_pieces(plane, plane.pixel_depth() - coarser, wall, time, coarser + 1U);
+            for (Piece& piece : pieces) {
+                piece.drift.velocity = Vec3(0.01f, 0, 0);
+                piece.moves = true;
+                piece.is_brief = is_brief;
+            }
+            mirror.look(view_at(Vec3(0), time), no_motions);
+            mirror.add(view_at(Vec3(0)).rays, no_motions, pieces);
+        }
+        mirror.look(view_at(Vec3(0), 1.1), no_motions);
+        EXPECT_NEAR(summary_of(mirror).worn, is_brief ? 2 : 1, 0.1) << "what is coarser hides nothing finer";
+    }
+}
+
 TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);
