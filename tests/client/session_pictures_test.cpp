@@ -66,6 +66,24 @@ int at_time(Shown& shown, SceneTime time) {
     return shown.at(10);
 }
 
+TEST(PictureMaker, AtRestACameraOfTheSceneIsWhereItsPictureWasTaken) {
+    Shown shown;
+    Batch batch = left_of(100, 80);
+    batch.scene_time = 0.3 / body_keys_per_second;
+    batch.view.camera.position.x = 0.5f; // the path between the keys is no straight line
+    batch.camera_track = BodyTrack{camera_body(0), 0, std::vector<BodyPose>(3)};
+    batch.camera_track->keys[1].translation.x = 1;
+    shown.insert(batch);
+    shown.request.scene_camera = 0;
+    shown.request.camera_number = batch.view.number;
+    EXPECT_EQ(at_time(shown, batch.scene_time), 80);
+    PictureMaker const& maker = shown.pictures.prepare(shown.view, shown.settings);
+    EXPECT_EQ(maker.shown_camera(), batch.view.camera);
+    EXPECT_TRUE(maker.is_exact());
+    at_time(shown, 0.6 / body_keys_per_second);
+    EXPECT_NEAR(maker.shown_camera().position.x, 0.6, 1e-4) << "by its track";
+}
+
 TEST(PictureMaker, WhatIsNotToBeShownYetWaits) {
     Shown shown;
     shown.insert(left_of(100, 50));

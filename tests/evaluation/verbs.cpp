@@ -13,6 +13,7 @@
 #include "tests/evaluation/correspondence/correspondence.h"
 #include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
+#include "tests/evaluation/pauses.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
@@ -157,6 +158,15 @@ void choose_programs(VerbOptions& options) {
     }
 }
 
+json answer_pauses(VerbOptions& options) {
+    StudyOptions const& study = options.study;
+    PauseOptions pauses;
+    pauses.viewport = study.run.viewport;
+    pauses.seed = study.run.seed;
+    pauses.rate = study.run.frames_per_second;
+    return measure_pauses(study.scenes, options.quick ? 12 : 100, pauses, study.charts);
+}
+
 json answer_report(VerbOptions& options) {
     choose_runs(options);
     choose_programs(options);
@@ -214,6 +224,12 @@ std::span<Verb const> verbs() {
          .scenes = {},
          .usual = {.seconds = 4, .rate = 20},
          .quick = {.viewport = {128, 72}, .rate = 20}},
+        {.name = "pauses",
+         .question = "Whether what a viewer shows at rest is what one who comes only then is shown (exit code 1: not)",
+         .answer = answer_pauses,
+         .scenes = {"vehicle_chase", "teleport", "windmill", "globe", "flicker", "vehicle_crossing"},
+         .usual = {.viewport = {160, 90}},
+         .quick = {.viewport = {96, 54}}},
         {.name = "sensitivity",
          .question = "How tsar answers to steeper and flatter templates of its error estimate",
          .answer = [](VerbOptions& o) { return measure_sensitivity(o.study); },

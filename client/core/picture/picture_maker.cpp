@@ -117,13 +117,16 @@ SceneTime PictureMaker::wanted_time(PictureRequest const& request) {
     return smoother_ ? late_clock_.read(request.now, time) : time;
 }
 
+/// A camera of the scene is where the newest batch of this very time saw it. Between the keys of its track it is only
+/// nearly there, and what is held would never be in its place, not even at rest.
 Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time) const {
     if (request.scene_camera < 0) {
         return request.camera;
     }
     BodyTrack const* const track = cameras_.find(camera_body(request.scene_camera));
     Camera const& newest = batch_view_.camera;
-    return track == nullptr ? newest : camera_at(*track, time, newest);
+    bool const is_seen = batch_time_ == time && batch_view_.number == request.camera_number;
+    return track == nullptr || is_seen ? newest : camera_at(*track, time, newest);
 }
 
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,

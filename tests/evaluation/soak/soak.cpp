@@ -31,7 +31,8 @@ using Clock = std::chrono::steady_clock;
 
 constexpr auto step = std::chrono::milliseconds(50); ///< time between pictures of a viewer
 constexpr double patience = 120; ///< seconds to wait for what is to come by itself
-constexpr double still_times[] = {0.5, 1.5, 3}; ///< scene times at which the scene stands in the calms, seconds
+/// Scene times at which the scene stands in the calms, seconds. They are between the keys of what moves.
+constexpr double still_times[] = {0.507, 1.513, 3.004};
 constexpr double least_psnr = 45; ///< least PSNR of a reference against a direct render of 64 samples a pixel, dB
 
 /// Link of a viewer: from no limit to links that are narrow, stall, or change their rate.
@@ -174,8 +175,8 @@ private:
                 }
             }
             strangers_.pass_time(now);
-            for (auto const& viewer : viewers_) {
-                viewer->move(seconds(), options_.flight);
+            for (std::size_t i = 0; i < viewers_.size(); ++i) {
+                viewers_[i]->move(seconds(), options_.flight, scene_camera_of(i));
             }
             most_resident = std::max(most_resident, holdings().resident_bytes);
             std::this_thread::sleep_for(step);
@@ -187,14 +188,26 @@ private:
                 {"most_resident_bytes", most_resident}};
     }
 
+    /// The camera of the scene that a viewer looks through: every other one through one that moves.
+    int scene_camera_of(std::size_t viewer) const {
+        int const count = static_cast<int>(scene_.scene.cameras.size());
+        for (int i = 0; i < count && viewer % 2 == 1 && !options_.flight; ++i) {
+            if (scene_.posed->camera_moves(i)) {
+                return i;
+            }
+        }
+        return -1;
+    }
+
     StillView view_of(std::size_t viewer, SceneTime moment) const {
         auto const number = static_cast<int>(viewer);
         if (options_.flight) {
-            return {options_.flight->at(options_.flight->duration() * (number + 1) / (options_.viewers + 1)),
+            return {options_.flight->at(options_.flight->duration() * (number + 1) / (options_.viewers + 1)), -1,
                     options_.viewport, moment};
         }
         CameraTurn const turn{5, 80};
-        return {turned(viewers_.front()->start_camera(), turn, number), {160 + 17 * number, 90 + 9 * number}, moment};
+        Camera const camera = turned(viewers_.front()->start_camera(), turn, number);
+        return {camera, scene_camera_of(viewer), {160 + 17 * number, 90 + 9 * number}, moment};
     }
 
     /// Waits until all pictures are complete; false where that never comes.
@@ -271,8 +284,10 @@ private:
         }
         reference = fresh.picture();
         pose_at(scene_, moment);
+        Camera const camera =
+            view.scene_camera >= 0 ? scene_.posed->camera(static_cast<Index>(view.scene_camera), moment) : view.camera;
         double const psnr = psnr_from_mse(mean_squared_error(
-            reference, render_picture(*scene_.render_scene, view.camera, view.viewport, scene_.exposure, 8)));
+            reference, render_picture(*scene_.render_scene, camera, view.viewport, scene_.exposure, 8)));
         if (psnr < least_psnr) {
             fail("the reference of viewer " + std::to_string(viewer) + " is " + std::to_string(psnr) +
                  " dB off the direct render");

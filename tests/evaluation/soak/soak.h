@@ -20,7 +20,7 @@ struct SoakOptions {
     double events = 1; ///< frequency of events in storms, as a multiple of the usual; 0: viewers only fly
     Viewport viewport{320, 180}; ///< viewport of viewers until an event resizes them
     /// Camera path that viewers fly in storms, there and back; empty: they look around from where the scene is seen
-    /// first.
+    /// first, every other one through a camera of the scene that moves.
     std::optional<CameraPath> flight;
     std::uint64_t seed = 1;
 };

@@ -56,9 +56,10 @@ void SoakViewer::take(StormMoment const& moment) {
     }
 }
 
-void SoakViewer::move(double now, std::optional<CameraPath> const& flight) {
+void SoakViewer::move(double now, std::optional<CameraPath> const& flight, int scene_camera) {
     double const there_and_back = flight ? std::abs(std::remainder(now, 2 * flight->duration())) : 0;
-    core_.set_view(flight ? flight->at(there_and_back) : turned(start_camera(), look_around, now), viewport_);
+    core_.set_view(flight ? flight->at(there_and_back) : turned(start_camera(), look_around, now), viewport_,
+                   scene_camera);
     core_.update_picture(picture_, changed_);
 }
 
@@ -67,7 +68,7 @@ bool SoakViewer::come_to_rest(StillView const& view) {
         settings_ = {};
         core_.set_settings(settings_);
     }
-    core_.set_view(view.camera, view.viewport);
+    core_.set_view(view.camera, view.viewport, view.scene_camera);
     ClockState const clock = core_.clock();
     bool const stands = !clock.playing && clock.time == view.time;
     auto const now = std::chrono::steady_clock::now();

@@ -16,6 +16,7 @@ namespace framelet::bench {
 /// View of a viewer at rest.
 struct StillView {
     Camera camera;
+    int scene_camera = -1; ///< >= 0: through that camera of the scene
     Viewport viewport;
     SceneTime time = 0; ///< scene time at which the scene stands
 };
@@ -27,8 +28,9 @@ public:
 
     /// Undergoes one of the events that happen to viewers.
     void take(StormMoment const& moment);
-    /// Flies there and back, or looks around where there is no flight, and makes a picture. `now`: seconds.
-    void move(double now, std::optional<CameraPath> const& flight);
+    /// Flies there and back, or looks around where there is no flight, or looks through a camera of the scene
+    /// (`scene_camera` >= 0), and makes a picture. `now`: seconds.
+    void move(double now, std::optional<CameraPath> const& flight, int scene_camera);
     /// Asks for this view, for the usual settings and, at intervals, for the scene to stand at that time; makes a
     /// picture. True once the scene stands there and the picture is complete.
     bool come_to_rest(StillView const& view);
