@@ -175,12 +175,13 @@ void BodyMotions::jump_at(SceneTime time) {
     }
 }
 
-SceneTime BodyMotions::last_jump(SceneTime time) const {
-    SceneTime last = -INFINITY;
+TimeSpan BodyMotions::between_jumps(SceneTime time) const {
+    TimeSpan span;
     for (SceneTime const jump : jumps_) {
-        last = jump <= time ? std::max(last, jump) : last;
+        span.first = jump <= time ? std::max(span.first, jump) : span.first;
+        span.last = jump > time ? std::min(span.last, std::nextafter(jump, time)) : span.last;
     }
-    return last;
+    return span;
 }
 
 bool is_at_rest(FrameletShape const& shape, SceneTime scene_time, BodyMotions const& motions) {

@@ -45,6 +45,14 @@ BodyPose pose_at(BodyTrack const& track, SceneTime time);
 /// equal; the identity, too, where a scale of 0 leaves it undefined.
 Motion motion_between(BodyTrack const& track, SceneTime from, SceneTime to);
 
+/// Scene times from `first` to `last`, both included, seconds; empty where `last` comes before `first`.
+struct TimeSpan {
+    SceneTime first = -INFINITY, last = INFINITY;
+
+    bool contains(SceneTime time) const { return first <= time && time <= last; }
+    bool operator==(TimeSpan const&) const = default;
+};
+
 /// The tracks of all bodies that a viewer knows.
 class BodyMotions {
 public:
@@ -67,10 +75,12 @@ public:
     BodyTrack const* find(BodyNumber body) const;
 
     /// Notes a jump of the scene: all may look otherwise from this scene time on, and what was rendered before is out
-    /// of date after it. The last two such times are known, one of which may still be to come.
+    /// of date after it, and what was rendered after before it. The last two such times are known, one of which may
+    /// still be to come.
     void jump_at(SceneTime time);
-    /// The latest jump that is not after `time`; less than any time where there is none.
-    SceneTime last_jump(SceneTime time) const;
+    /// The times between which there is no jump, `time` among them: from the latest jump that is not after it, until
+    /// the earliest one that is.
+    TimeSpan between_jumps(SceneTime time) const;
 
 private:
     void drop_surplus();

@@ -84,7 +84,7 @@ FrameletWarp::FrameletWarp(FrameletCache const& cache, std::size_t slot, SlotRol
                            SceneTime time, BodyMotions const& motions)
     : cache_(cache), slot_(slot), role_(role), display_(display),
       display_rays_(make_view_rays(display, cache.plane().viewport())), time_(time),
-      last_jump_(motions.last_jump(time)), motions_(motions) {}
+      valid_(motions.between_jumps(time)), motions_(motions) {}
 
 void FrameletWarp::add(CachedFramelet const& framelet, unsigned parts, std::vector<WarpPatch>& patches,
                        std::vector<Splat>& splats) {
@@ -175,7 +175,7 @@ float FrameletWarp::worn(std::uint32_t view, DecorrelationCode decorrelation, fl
         lasts_.first = std::max(lasts_.first, rendered + (both || time_ < rendered ? -until : since));
         lasts_.last = std::min(lasts_.last, rendered + (both || time_ >= rendered ? until : -since));
     }
-    return rendered < last_jump_ ? behind_all * step : step;
+    return valid_.contains(rendered) ? step : behind_all * step;
 }
 
 void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Layer const& layer, WarpPatch& patch) {

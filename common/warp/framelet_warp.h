@@ -14,13 +14,6 @@
 
 namespace framelet {
 
-/// Scene times from `first` to `last`, both included, seconds; empty where `last` comes before `first`.
-struct TimeSpan {
-    SceneTime first = 0, last = 0;
-
-    bool contains(SceneTime time) const { return first <= time && time <= last; }
-};
-
 /// Transforms one framelet after the other and keeps the last transform, since neighbours mostly share view and body.
 /// What is not finite or too large for single precision does not show.
 class FrameletWarp {
@@ -67,10 +60,10 @@ private:
     Camera const& display_;
     ViewRays display_rays_;
     SceneTime time_;
-    SceneTime last_jump_;
+    TimeSpan valid_; ///< when what was rendered is not out of date
     BodyMotions const& motions_;
 
-    TimeSpan lasts_{-INFINITY, INFINITY};
+    TimeSpan lasts_;
 
     PixelRect rect_; // of the tile at hand, pixels
     double spacing_ = 1; // of its moving grid, pixels

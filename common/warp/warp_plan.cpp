@@ -92,9 +92,9 @@ void WarpPlan::Square::give_back_room() {
 void WarpPlan::make(FrameletCache const& cache, std::size_t slot, SlotRole role, Camera const& display,
                     SceneTime display_time, BodyMotions const& motions) {
     set_squares(cache);
-    SceneTime const last_jump = motions.last_jump(display_time);
-    bool const is_new = is_limited_ || role != role_ || !(display == display_) || last_jump != last_jump_;
-    last_jump_ = last_jump;
+    TimeSpan const valid = motions.between_jumps(display_time);
+    bool const is_new = is_limited_ || role != role_ || !(display == display_) || valid != valid_;
+    valid_ = valid;
     display_ = display;
     role_ = role;
     replanned_.clear();

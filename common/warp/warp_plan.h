@@ -125,7 +125,7 @@ private:
     std::unique_ptr<Mergings> mergings_; ///< scratch
     Camera display_; ///< the camera that the plan is for
     SlotRole role_;
-    SceneTime last_jump_ = -INFINITY; ///< the scene's last jump before what is displayed
+    TimeSpan valid_; ///< when what was rendered is not out of date
     bool is_limited_ = false; ///< there is no room for all patches
     std::vector<std::uint32_t> first_entry_; ///< index of each block's first entry; one more at the end
     std::vector<std::uint32_t> next_entry_;

@@ -38,13 +38,24 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
            held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
 }
 
+/// True where what is held of the first shows about the second: not after the scene's clock was set to another time,
+/// nor at another size.
+bool MomentChoice::is_near(ViewState const& one, ViewState const& other) {
+    constexpr SceneTime near = 0.5; // seconds
+    return std::abs(one.scene_time - other.scene_time) < near && one.view.viewport == other.view.viewport;
+}
+
 bool MomentChoice::observe(ViewState const& present, double now, bool viewer_moves_samples) {
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
+        is_stop_ = is_stop_ && last_ && is_near(*last_, present);
     }
     last_ = present;
-    if (!viewer_moves_samples || now - changed_ > rest_seconds) {
+    bool const is_complete = held_ && completed_ && held_->begun >= changed_;
+    double const still = is_stop_ && !is_complete ? stop_seconds : rest_seconds;
+    if (!viewer_moves_samples || now - changed_ > still) {
         held_.reset();
+        is_stop_ = false;
         return false;
     }
     return !goes_on(present, now);

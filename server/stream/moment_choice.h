@@ -22,6 +22,9 @@ inline constexpr double least_standing_seconds = 0.05;
 
 /// Seconds after which a picture that has stayed as it is counts as at rest: longer than a slow display's frame.
 inline constexpr double rest_seconds = 0.05;
+/// The same after the scene's clock was stopped, unless the moment is complete before: what is held is of other times,
+/// and what of it shows the present wrongly is rendered first.
+inline constexpr double stop_seconds = 0.25;
 
 /// A moment lasts until the next multiple of its length: viewers of one scene change together.
 class MomentChoice {
@@ -38,14 +41,19 @@ public:
     /// The moment to render; nothing where the present is.
     std::optional<HeldMoment> const& held() const { return held_; }
     /// Ends the moment that is held, so that the next begins anew, as after the scene's clock was set.
-    void forget() { held_.reset(); }
+    void forget() {
+        held_.reset();
+        is_stop_ = true;
+    }
 
 private:
+    static bool is_near(ViewState const& one, ViewState const& other);
     bool goes_on(ViewState const& present, double now) const;
 
     std::optional<HeldMoment> held_;
     std::optional<ViewState> last_; ///< present
     double changed_ = 0; ///< when `last_` was last another one, seconds
+    bool is_stop_ = false; ///< the scene's clock was set, to about what it was, since the last rest
     std::optional<double> completed_; ///< when the moment that is held was complete, seconds
     double standing_seconds_ = least_moment_seconds;
 };

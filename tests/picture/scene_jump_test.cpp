@@ -50,6 +50,22 @@ TEST(SceneJump, WhatWasRenderedBeforeShowsOnlyWhereNothingElseDoes) {
     EXPECT_EQ(levels_at(show(pool, front(), 1.1, motions)), (Levels{bright, dark}));
 }
 
+TEST(SceneJump, WhatWasRenderedOfLaterShowsOnlyWhereNothingElseDoes) {
+    ImagePlane const plane(viewport);
+    AnalyticScene const before = lit_floor(dark), after = lit_floor(bright);
+    Camera aside = front();
+    aside.position.x += 0.01f;
+    FrameletPool pool(plane);
+    pool.insert(after.batch(plane, 1, aside, 1, visible_tiles(plane, plane.pixel_depth())), after.motions);
+    pool.insert(before.batch(plane, 2, front(), 0.4, visible_tiles(plane, plane.pixel_depth() - 2)), before.motions);
+    aside.position.x += 0.01f; // where neither is in its place
+    BodyMotions motions;
+    EXPECT_EQ(levels_at(show(pool, aside, 0.4, motions)), (Levels{bright, bright})) << "the finer ones show";
+    motions.jump_at(0.5);
+    EXPECT_EQ(levels_at(show(pool, aside, 0.4, motions)), (Levels{dark, dark}));
+    EXPECT_EQ(levels_at(show(pool, aside, 0.5, motions)), (Levels{bright, bright}));
+}
+
 TEST(SceneJump, APictureFollowsItThoughNothingElseChanges) {
     FrameletPool const pool = switched_on();
     BodyMotions motions;

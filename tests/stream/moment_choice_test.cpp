@@ -1,6 +1,7 @@
 #include "server/stream/moment_choice.h"
 
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -50,6 +51,26 @@ TEST(MomentChoice, TheMoreIsRenderedTheSoonerAMomentEnds) {
     }
 }
 
+TEST(MomentChoice, WhereAMomentIsSoonCompleteTheNextAreShorter) {
+    MomentChoice moments;
+    EXPECT_EQ(moments.standing_seconds(), least_moment_seconds);
+    auto const begin = [&](double now, std::optional<double> completed) {
+        moments.begin({state_at(now), now, moments.standing_seconds()});
+        if (completed) {
+            moments.note_complete(now + *completed);
+        }
+    };
+    begin(1, 0.3 * least_moment_seconds);
+    begin(2, 0.7 * least_standing_seconds);
+    EXPECT_EQ(moments.standing_seconds(), least_standing_seconds);
+    begin(3, 0.1 * least_standing_seconds); // that took more than half of its time: as long as it was
+    EXPECT_EQ(moments.standing_seconds(), least_standing_seconds);
+    begin(4, {}); // there are no shorter ones
+    EXPECT_EQ(moments.standing_seconds(), least_standing_seconds);
+    begin(5, {}); // that was never complete
+    EXPECT_EQ(moments.standing_seconds(), least_moment_seconds);
+}
+
 TEST(MomentChoice, ViewersOfOneSceneChangeTogether) {
     MomentChoice one, other;
     double const late = 7.04;
@@ -73,6 +94,27 @@ TEST(MomentChoice, AtRestThePresentIsRendered) {
     auto const moment = choose(moments, state_at(1, 3), 12.01, true);
     ASSERT_TRUE(moment);
     EXPECT_EQ(moment->state.view.camera.position.x, 3);
+}
+
+TEST(MomentChoice, AfterTheClockWasSetTheMomentIsCompletedFirst) {
+    double const later = 10 + 0.9 * stop_seconds;
+    for (bool const completes : {false, true}) {
+        MomentChoice moments;
+        choose(moments, state_at(1), 9.99, true);
+        moments.forget();
+        ASSERT_TRUE(choose(moments, state_at(1.1), 10, true, 1));
+        if (completes) {
+            moments.note_complete(10.01);
+        }
+        EXPECT_TRUE(choose(moments, state_at(1.1), 10 + 0.9 * rest_seconds, true, 1));
+        EXPECT_EQ(choose(moments, state_at(1.1), later, true, 1).has_value(), !completes);
+        EXPECT_FALSE(choose(moments, state_at(1.1), 10 + 1.1 * stop_seconds, true, 1));
+        ASSERT_TRUE(choose(moments, state_at(3), 12, true, 1)); // the clock goes on
+        EXPECT_FALSE(choose(moments, state_at(3), 12 + 1.1 * rest_seconds, true, 1)) << "nobody set it this time";
+        moments.forget();
+        ASSERT_TRUE(choose(moments, state_at(9), 14, true, 1));
+        EXPECT_FALSE(choose(moments, state_at(9), 14 + 1.1 * rest_seconds, true, 1)) << "nothing of that time is held";
+    }
 }
 
 TEST(MomentChoice, WhatHasNotBeenLookedAtForAWhileHasNotRested) {

@@ -137,7 +137,7 @@ bool same_camera(ViewRays const& a, ViewRays const& b) {
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
-    SceneTime const last_jump = reprojection.motions->last_jump(reprojection.display.scene_time);
+    TimeSpan const valid = reprojection.motions->between_jumps(reprojection.display.scene_time);
     auto const focal = [](ViewRays const& rays) { return 1 / glm::length(rays.direction_dx); };
     Display const display{reprojection.display_size, focal(reprojection.source), focal(reprojection.display.rays),
                           reprojection.is_base};
@@ -150,7 +150,7 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
         reprojected.push_back(with_outliers || !piece.is_outlier
                                   ? reproject(piece, transform_of(reprojection, piece, transforms), display, age)
                                   : ReprojectedPiece{});
-        reprojected.back().is_outdated = piece.scene_time < last_jump;
+        reprojected.back().is_outdated = !valid.contains(piece.scene_time);
     }
 }
 
