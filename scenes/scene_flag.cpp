@@ -17,9 +17,8 @@ struct Wave {
     D2 phase; ///< radians a metre, away from the mast and up
 };
 
-/// Swing at a place of the cloth, whose mast is at x = 0, and its slopes along x and y. The wave
-/// cos(phase - t) is cos(phase) cos(t) + sin(phase) sin(t): one target for each of these, of which `quarter` 1 is the
-/// second.
+/// Swing at a place of the cloth, whose mast is at x = 0, and its slopes along x and y. The wave cos(phase - t) is
+/// cos(phase) cos(t) + sin(phase) sin(t): a target for each, of which `quarter` 1 is the second.
 D3 swing(Wave const& wave, int quarter, D2 at) {
     constexpr double free_from = 0.5; // metres
     double const held = std::exp(-at.x / free_from);

@@ -191,8 +191,8 @@ void add_leg(FigureParts& parts, int side) {
                                        Ring{0.14, 0.04, 0.048, -0.004},
                                        Ring{0.14, 0, 0}};
     add_tube(parts.trousers, leg, 18, 40, {2, 5}, links, {hip, rotation_about({0, 0, 1}, pi), {1, 1, 1}});
-    std::array<Link, 1> const stiff{Link{joint_number(foot, side)}};
-    add_tube(parts.shoes, shoe, 18, 14, {1, 1}, stiff, {{hip.x, 0, hip.z}});
+    std::array<Link, 2> const collar{Link{joint_number(foot, side)}, Link{joint_number(shin, side), 0.12, 0.035}};
+    add_tube(parts.shoes, shoe, 18, 14, {1, 1}, collar, {{hip.x, 0, hip.z}});
 }
 
 } // namespace

@@ -1,8 +1,6 @@
 // How a figure walks or runs along a circle. In: the way it goes, a phase of its step. Out: rotations of its joints.
 #pragma once
 
-#include <vector>
-
 #include "scenes/things/figure.h"
 
 namespace framelet {

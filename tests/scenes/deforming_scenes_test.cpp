@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "scenes/failure_scenes.h"
-#include "scenes/scene_table.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/switches.h"
 #include "server/scene/scene_import.h"
@@ -32,7 +31,7 @@ INSTANTIATE_TEST_SUITE_P(Names, LoopingScene,
                          testing::Values("walker", "flag", "fan", "windmill", "globe", "foliage", "dim", "stop"),
                          [](auto const& instance) { return instance.param; });
 
-/// A target's share of the flag's swing at one vertex, at a time in [0, 1) of the clip.
+/// How far the cloth swings at one vertex, at one key of its clip, metres.
 double swing_at(GltfPrimitive const& cloth, GltfTrack const& track, std::size_t vertex, std::size_t key) {
     double sum = 0;
     for (std::size_t t = 0; t < cloth.targets.size(); ++t) {

@@ -44,18 +44,16 @@ TEST_F(AFigure, IsMovedByEachOfItsJointsAndFollowsThemWhole) {
 }
 
 TEST_F(AFigure, BendsSmoothly) {
-    // No edge of a triangle takes a joint up or gives it up by more than this: the skin has rings enough where it
-    // bends.
-    for (GltfPrimitive const& part : parts()) {
-        MeshData const& data = part.data;
-        for (std::size_t i = 0; i < data.indices.size(); ++i) {
-            std::uint32_t const a = data.indices[i];
-            std::uint32_t const b = data.indices[i % 3 == 2 ? i - 2 : i + 1];
-            for (int joint = 0; joint < figure_joints; ++joint) {
-                EXPECT_LT(std::abs(weight_of(data.joint_weights[a], joint) - weight_of(data.joint_weights[b], joint)),
-                          0.7);
-            }
+    constexpr std::size_t two_rings = 28; // vertices; of a hand's skin, the thinnest
+    for (int joint = 1; joint < figure_joints; ++joint) {
+        std::size_t shared = 0;
+        for (GltfPrimitive const& part : parts()) {
+            shared +=
+                static_cast<std::size_t>(std::ranges::count_if(part.data.joint_weights, [&](auto const& moved_by) {
+                    return std::min(weight_of(moved_by, joint), weight_of(moved_by, parent_joint(joint))) > 0.02;
+                }));
         }
+        EXPECT_GE(shared, two_rings) << "joint " << joint;
     }
 }
 
