@@ -75,4 +75,27 @@ struct DimParameters {
 };
 GltfDocument make_dim_scene(DimParameters const& parameters);
 
+/// A figure walks round a column, another runs round both: skins, seen from all sides, over slabs and before bricks.
+struct WalkerParameters {
+    double duration = 4; ///< seconds, of a whole round
+    double walk_radius = 1.05, run_radius = 2.2; ///< of the rounds, metres
+    int walk_cycles = 5, run_cycles = 6; ///< pairs of steps in a round
+};
+GltfDocument make_walker_scene(WalkerParameters const& parameters);
+
+/// A printed flag and a pennant wave by morph targets, two for each wave that travels along them.
+struct FlagParameters {
+    double duration = 4; ///< seconds
+    int long_waves = 4, short_waves = 7; ///< that pass a place within `duration`
+};
+GltfDocument make_flag_scene(FlagParameters const& parameters);
+
+/// A fan turns below the lamps of a furnished room: the shadows of its blades sweep over all of it.
+struct FanParameters {
+    double duration = 4; ///< seconds
+    int turns = 4, blades = 5; ///< turns within `duration`
+    double drift = 0.12; ///< of the camera: metres to either side
+};
+GltfDocument make_fan_scene(FanParameters const& parameters);
+
 } // namespace framelet

@@ -79,6 +79,9 @@ std::span<SceneEntry const> scene_table() {
          }},
         {"foliage", 8, true, [] { return make_foliage_scene({.duration = 8}); }},
         {"dim", 4, true, [] { return make_dim_scene({.duration = 4, .turns = 3}); }},
+        {"walker", 4, true, [] { return make_walker_scene({.duration = 4}); }},
+        {"flag", 4, true, [] { return make_flag_scene({.duration = 4}); }},
+        {"fan", 4, true, [] { return make_fan_scene({.duration = 4}); }},
     };
     return table;
 }

@@ -25,10 +25,16 @@ struct GltfMaterial {
     bool operator==(GltfMaterial const&) const = default;
 };
 
-/// A mesh has one primitive a material.
+/// What is added to positions and normals, times the target's weight; one entry a vertex each.
+struct GltfMorphTarget {
+    std::vector<D3> positions, normals;
+};
+
+/// A mesh has one primitive a material; all of them have equally many morph targets.
 struct GltfPrimitive {
     MeshData data;
     int material = 0;
+    std::vector<GltfMorphTarget> targets{};
 };
 
 struct GltfMesh {
@@ -42,7 +48,14 @@ struct GltfNode {
     int mesh = no_index;
     int camera = no_index;
     int light = no_index;
+    int skin = no_index; ///< moves `mesh`, whose vertices have joints; the node's own place then counts for nothing
     std::vector<int> children{};
+};
+
+/// Joints as the mesh was made for them: not turned, at these places in its space.
+struct GltfSkin {
+    std::vector<int> joints; ///< nodes
+    std::vector<D3> places; ///< one a joint
 };
 
 struct GltfCamera {
@@ -57,15 +70,16 @@ struct GltfLight {
     double intensity = 1; ///< candela for point, lux for directional
 };
 
-enum class GltfPath : std::uint8_t { translation, rotation };
+enum class GltfPath : std::uint8_t { translation, rotation, weights };
 
-/// Keys of one property of one or more nodes (which then share the keys). Rotations are x, y, z, w.
+/// Keys of one property of one or more nodes (which then share the keys). Rotations are x, y, z, w; weights are those
+/// of the mesh's morph targets, four at most.
 struct GltfTrack {
     std::vector<int> nodes;
     GltfPath path = GltfPath::translation;
     bool step = false; ///< holds each value until the next key; else linear
     std::vector<double> times; ///< seconds, increasing
-    std::vector<D4> values; ///< w is used by rotations alone
+    std::vector<D4> values; ///< translations leave w alone
 };
 
 struct GltfDocument {
@@ -74,6 +88,7 @@ struct GltfDocument {
     std::vector<GltfMaterial> materials;
     std::vector<GltfMesh> meshes;
     std::vector<GltfNode> nodes;
+    std::vector<GltfSkin> skins;
     std::vector<GltfCamera> cameras;
     std::vector<GltfLight> lights;
     std::vector<GltfTrack> tracks; ///< one clip

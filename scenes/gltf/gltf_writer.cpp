@@ -1,9 +1,11 @@
 #include "scenes/gltf/gltf_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include <nlohmann/json.hpp>
@@ -28,6 +30,10 @@ constexpr double value_grid = 1048576;
 float on_grid(double value, double grid) {
     FRAMELET_CHECK(std::isfinite(value));
     return static_cast<float>(std::round(value * grid) / grid + 0.0); // + 0.0: no negative zero
+}
+
+std::uint8_t as_byte(double share) {
+    return static_cast<std::uint8_t>(std::lround(share * 255));
 }
 
 Json numbers(std::initializer_list<double> values) {
@@ -69,7 +75,9 @@ struct Binary {
         Json accessor{{"bufferView", add_view(values.data(), values.size() * sizeof(float), target)},
                       {"componentType", type_float},
                       {"count", values.size() / width},
-                      {"type", components == 1 ? "SCALAR" : "VEC" + std::to_string(components)}};
+                      {"type", components == 1    ? "SCALAR"
+                               : components == 16 ? "MAT4"
+                                                  : "VEC" + std::to_string(components)}};
         if (with_range) {
             std::vector<float> lower(width, std::numeric_limits<float>::max());
             std::vector<float> upper(width, std::numeric_limits<float>::lowest());
@@ -100,36 +108,73 @@ struct Binary {
         return static_cast<int>(accessors.size()) - 1;
     }
 
-    int add_colors(std::vector<D3> const& colors) {
-        std::vector<std::uint8_t> bytes_of_colors;
-        for (D3 const& color : colors) {
+    int add_vectors(std::vector<D3> const& vectors, double grid, bool with_range) {
+        std::vector<float> values;
+        for (D3 const& vector : vectors) {
             for (int c = 0; c < 3; ++c) {
-                bytes_of_colors.push_back(static_cast<std::uint8_t>(std::lround(std::clamp(color[c], 0.0, 1.0) * 255)));
+                values.push_back(on_grid(vector[c], grid));
             }
-            bytes_of_colors.push_back(255);
         }
-        accessors.push_back({{"bufferView", add_view(bytes_of_colors.data(), bytes_of_colors.size(), array_buffer)},
-                             {"componentType", type_unsigned_byte},
-                             {"normalized", true},
-                             {"count", colors.size()},
-                             {"type", "VEC4"}});
+        return add_floats(values, 3, array_buffer, with_range);
+    }
+
+    int add_bytes(std::vector<std::uint8_t> const& values, bool normalized) {
+        Json accessor{{"bufferView", add_view(values.data(), values.size(), array_buffer)},
+                      {"componentType", type_unsigned_byte}};
+        if (normalized) {
+            accessor["normalized"] = true;
+        }
+        accessor["count"] = values.size() / 4;
+        accessor["type"] = "VEC4";
+        accessors.push_back(std::move(accessor));
         return static_cast<int>(accessors.size()) - 1;
     }
+
+    int add_colors(std::vector<D3> const& colors) {
+        std::vector<std::uint8_t> values;
+        for (D3 const& color : colors) {
+            for (int c = 0; c < 3; ++c) {
+                values.push_back(as_byte(std::clamp(color[c], 0.0, 1.0)));
+            }
+            values.push_back(255);
+        }
+        return add_bytes(values, true);
+    }
 };
+
+/// Adds JOINTS_0 and WEIGHTS_0. Weights are bytes that sum to 255 as they must; the strongest takes what rounding
+/// leaves.
+void write_joint_weights(Binary& binary, std::vector<JointWeights> const& joint_weights, Json& attributes) {
+    std::vector<std::uint8_t> joints;
+    std::vector<std::uint8_t> weights;
+    for (JointWeights const& moved_by : joint_weights) {
+        std::array<std::uint8_t, 4> shares{};
+        std::transform(moved_by.weights.begin(), moved_by.weights.end(), shares.begin(), as_byte);
+        int const sum = std::accumulate(shares.begin(), shares.end(), 0);
+        FRAMELET_CHECK(std::abs(sum - 255) <= 2);
+        auto const strongest = std::max_element(shares.begin(), shares.end());
+        *strongest = static_cast<std::uint8_t>(*strongest + 255 - sum);
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+            FRAMELET_CHECK(moved_by.joints[k] >= 0 && moved_by.joints[k] < 256);
+            joints.push_back(shares[k] > 0 ? static_cast<std::uint8_t>(moved_by.joints[k]) : 0);
+            weights.push_back(shares[k]);
+        }
+    }
+    attributes["JOINTS_0"] = binary.add_bytes(joints, false);
+    attributes["WEIGHTS_0"] = binary.add_bytes(weights, true);
+}
+
+Json write_target(Binary& binary, GltfMorphTarget const& target, std::size_t vertices) {
+    FRAMELET_CHECK(target.positions.size() == vertices && target.normals.size() == vertices);
+    return {{"POSITION", binary.add_vectors(target.positions, position_grid, true)},
+            {"NORMAL", binary.add_vectors(target.normals, value_grid, false)}};
+}
 
 Json write_primitive(Binary& binary, GltfPrimitive const& primitive, bool textured) {
     MeshData const& mesh = primitive.data;
     FRAMELET_CHECK(!mesh.indices.empty() && mesh.normals.size() == mesh.positions.size());
-    std::vector<float> positions;
-    std::vector<float> normals;
-    for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        for (int c = 0; c < 3; ++c) {
-            positions.push_back(on_grid(mesh.positions[i][c], position_grid));
-            normals.push_back(on_grid(mesh.normals[i][c], value_grid));
-        }
-    }
-    Json attributes{{"POSITION", binary.add_floats(positions, 3, array_buffer, true)},
-                    {"NORMAL", binary.add_floats(normals, 3, array_buffer, false)}};
+    Json attributes{{"POSITION", binary.add_vectors(mesh.positions, position_grid, true)},
+                    {"NORMAL", binary.add_vectors(mesh.normals, value_grid, false)}};
     if (textured) {
         FRAMELET_CHECK(mesh.uv.size() == mesh.positions.size());
         std::vector<float> uv;
@@ -143,9 +188,17 @@ Json write_primitive(Binary& binary, GltfPrimitive const& primitive, bool textur
         FRAMELET_CHECK(mesh.colors.size() == mesh.positions.size());
         attributes["COLOR_0"] = binary.add_colors(mesh.colors);
     }
-    return {{"attributes", std::move(attributes)},
-            {"indices", binary.add_indices(mesh.indices, mesh.positions.size())},
-            {"material", primitive.material}};
+    if (!mesh.joint_weights.empty()) {
+        FRAMELET_CHECK(mesh.joint_weights.size() == mesh.positions.size());
+        write_joint_weights(binary, mesh.joint_weights, attributes);
+    }
+    Json json{{"attributes", std::move(attributes)},
+              {"indices", binary.add_indices(mesh.indices, mesh.positions.size())},
+              {"material", primitive.material}};
+    for (GltfMorphTarget const& target : primitive.targets) {
+        json["targets"].push_back(write_target(binary, target, mesh.positions.size()));
+    }
+    return json;
 }
 
 /// The material as JSON; adds the glTF extensions that it uses to `extensions`.
@@ -196,6 +249,9 @@ Json write_node(GltfNode const& node) {
     if (node.mesh != no_index) {
         json["mesh"] = node.mesh;
     }
+    if (node.skin != no_index) {
+        json["skin"] = node.skin;
+    }
     if (node.camera != no_index) {
         json["camera"] = node.camera;
     }
@@ -208,25 +264,50 @@ Json write_node(GltfNode const& node) {
     return json;
 }
 
-Json write_animation(Binary& binary, std::vector<GltfTrack> const& tracks) {
+Json write_skin(Binary& binary, GltfSkin const& skin) {
+    FRAMELET_CHECK(skin.joints.size() == skin.places.size());
+    std::vector<float> matrices;
+    for (D3 const& place : skin.places) {
+        auto const back = [](double value) { return on_grid(-value, position_grid); };
+        matrices.insert(matrices.end(),
+                        {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, back(place.x), back(place.y), back(place.z), 1});
+    }
+    return {{"inverseBindMatrices", binary.add_floats(matrices, 16, 0, false)}, {"joints", skin.joints}};
+}
+
+/// Numbers in a key of the track.
+int width_of(GltfTrack const& track, GltfDocument const& document) {
+    if (track.path == GltfPath::weights) {
+        GltfNode const& node = document.nodes.at(static_cast<std::size_t>(track.nodes.at(0)));
+        auto const targets = document.meshes.at(static_cast<std::size_t>(node.mesh)).primitives.at(0).targets.size();
+        FRAMELET_CHECK(targets >= 1 && targets <= 4);
+        return static_cast<int>(targets);
+    }
+    return track.path == GltfPath::rotation ? 4 : 3;
+}
+
+Json write_animation(Binary& binary, GltfDocument const& document) {
+    static constexpr std::array names{"translation", "rotation", "weights"}; // by GltfPath
     Json channels = Json::array();
     Json samplers = Json::array();
-    for (GltfTrack const& track : tracks) {
+    for (GltfTrack const& track : document.tracks) {
         FRAMELET_CHECK(track.times.size() == track.values.size() && !track.times.empty());
-        int const width = track.path == GltfPath::rotation ? 4 : 3;
+        int const width = width_of(track, document);
         std::vector<float> times;
         std::vector<float> values;
         for (std::size_t key = 0; key < track.times.size(); ++key) {
             times.push_back(on_grid(track.times[key], value_grid));
             FRAMELET_CHECK(key == 0 || times[key] > times[key - 1]);
             for (int c = 0; c < width; ++c) {
-                values.push_back(on_grid(track.values[key][c], width == 4 ? value_grid : position_grid));
+                values.push_back(
+                    on_grid(track.values[key][c], track.path == GltfPath::translation ? position_grid : value_grid));
             }
         }
+        int const components = track.path == GltfPath::weights ? 1 : width; // of an element of the accessor
         samplers.push_back({{"input", binary.add_floats(times, 1, 0, true)},
-                            {"output", binary.add_floats(values, width, 0, false)},
+                            {"output", binary.add_floats(values, components, 0, false)},
                             {"interpolation", track.step ? "STEP" : "LINEAR"}});
-        char const* const path = track.path == GltfPath::rotation ? "rotation" : "translation";
+        char const* const path = names.at(static_cast<std::size_t>(track.path));
         for (int const node : track.nodes) {
             channels.push_back({{"sampler", samplers.size() - 1}, {"target", {{"node", node}, {"path", path}}}});
         }
@@ -284,6 +365,9 @@ std::string write_glb(GltfDocument const& document) {
         }
         json["meshes"].push_back({{"name", mesh.name}, {"primitives", std::move(primitives)}});
     }
+    for (GltfSkin const& skin : document.skins) {
+        json["skins"].push_back(write_skin(binary, skin));
+    }
     for (GltfMaterial const& material : document.materials) {
         json["materials"].push_back(write_material(material, extensions));
     }
@@ -302,7 +386,7 @@ std::string write_glb(GltfDocument const& document) {
                                    {"perspective", {{"yfov", camera.vertical_fov}, {"znear", 0.05}, {"zfar", 5000}}}});
     }
     if (!document.tracks.empty()) {
-        json["animations"] = Json::array({write_animation(binary, document.tracks)});
+        json["animations"] = Json::array({write_animation(binary, document)});
     }
     if (!document.lights.empty()) {
         json["extensions"]["KHR_lights_punctual"]["lights"] = write_lights(document.lights);

@@ -7,8 +7,8 @@
 
 namespace framelet {
 
-/// Positions are rounded to 1/65536 m, everything else to 1/2^20, so that the last bit of a sine does not reach the
-/// file. Aborts where the document names something that it does not hold.
+/// Positions are rounded to 1/65536 m, colours and weights of joints to 1/255, everything else to 1/2^20, so that the
+/// last bit of a sine does not reach the file. Aborts where the document names something that it does not hold.
 std::string write_glb(GltfDocument const& document);
 
 } // namespace framelet

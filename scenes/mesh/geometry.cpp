@@ -1,8 +1,14 @@
 #include "scenes/mesh/geometry.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace framelet {
+
+double smooth_step(double t) {
+    double const x = std::clamp(t, 0.0, 1.0);
+    return x * x * (3 - 2 * x);
+}
 
 DQuat rotation_about(D3 axis, double angle) {
     double const s = std::sin(angle / 2);
@@ -26,6 +32,7 @@ void append(MeshData& mesh, MeshData const& part, Placement const& place) {
     }
     mesh.uv.insert(mesh.uv.end(), part.uv.begin(), part.uv.end());
     mesh.colors.insert(mesh.colors.end(), part.colors.begin(), part.colors.end());
+    mesh.joint_weights.insert(mesh.joint_weights.end(), part.joint_weights.begin(), part.joint_weights.end());
     for (std::uint32_t const index : part.indices) {
         mesh.indices.push_back(first + index);
     }

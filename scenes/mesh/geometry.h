@@ -2,6 +2,7 @@
 // to float only when written, so that the files come out the same on every machine.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -20,11 +21,18 @@ constexpr double radians(double degrees) {
     return degrees * pi / 180;
 }
 
-/// A triangle list. `uv` and `colors` (linear) are empty or have one entry a vertex.
+/// Joints of a skin that move a vertex, and how much each does; weights sum to 1.
+struct JointWeights {
+    std::array<int, 4> joints{};
+    std::array<double, 4> weights{};
+};
+
+/// A triangle list. `uv`, `colors` (linear) and `joint_weights` are empty or have one entry a vertex.
 struct MeshData {
     std::vector<D3> positions, normals;
     std::vector<D2> uv;
     std::vector<D3> colors;
+    std::vector<JointWeights> joint_weights;
     std::vector<std::uint32_t> indices;
 };
 
@@ -35,12 +43,15 @@ struct Placement {
     D3 scale{1, 1, 1};
 };
 
+/// 0 up to t = 0, 1 from t = 1 on, without a bend between.
+double smooth_step(double t);
+
 /// Rotation by `angle` radians about a unit axis.
 DQuat rotation_about(D3 axis, double angle);
 /// The rotation that turns a camera (looking down -Z, +Y up) at `eye` towards `target`.
 DQuat looking_at(D3 eye, D3 target);
 
-/// Adds `part`, moved to `place`. Both have texture coordinates or neither has; the same for colours.
+/// Adds `part`, moved to `place`. Both have texture coordinates or neither has; the same for colours and joints.
 void append(MeshData& mesh, MeshData const& part, Placement const& place = {});
 
 /// A number, uniform in [0, 1), that is the same for the same arguments everywhere.

@@ -185,6 +185,47 @@ std::string globe_texture() {
     return encode_png(pixels);
 }
 
+std::string stripe_texture() {
+    TexturePixels pixels(128, 128, 3);
+    for (int y = 0; y < pixels.height; ++y) {
+        for (int x = 0; x < pixels.width; ++x) {
+            bool const dark = y % 64 < 24;
+            bool const line = x % 128 < 6;
+            double const weave = (x / 2 + y / 2) % 2 == 0 ? 0.93 : 1.0;
+            D3 const color = line ? D3(0.85, 0.25, 0.18) : dark ? D3(0.13, 0.17, 0.34) : D3(0.92, 0.91, 0.88);
+            set_color(pixels.at(x, y), color * weave);
+        }
+    }
+    return encode_png(pixels);
+}
+
+std::string flag_texture() {
+    TexturePixels pixels(384, 256, 3);
+    D2 const middle(146, 128);
+    for (int y = 0; y < pixels.height; ++y) {
+        for (int x = 0; x < pixels.width; ++x) {
+            bool const light = y * 9 / pixels.height % 2 == 1;
+            D3 color = light ? D3(0.94, 0.92, 0.86) : D3(0.05, 0.36, 0.48);
+            D2 const out = D2(x + 0.5, y + 0.5) - middle;
+            double const distance = glm::length(out);
+            double const ray = std::abs(std::remainder(std::atan2(out.x, -out.y), pi / 4)); // from the nearest of eight
+            if (distance < 92) {
+                color = distance < 84 ? D3(0.80, 0.16, 0.12) : D3(0.97, 0.80, 0.25);
+            }
+            if (distance < 76 - 100 * ray || distance < 26) {
+                color = D3(0.97, 0.80, 0.25);
+            }
+            if (distance < 18) {
+                color = D3(0.05, 0.36, 0.48);
+            }
+            bool const hem = x < 8 || x >= 378 || y < 5 || y >= 251;
+            double const weave = (x + y) % 2 == 0 ? 0.96 : 1.0;
+            set_color(pixels.at(x, y), color * (hem ? 0.8 : weave));
+        }
+    }
+    return encode_png(pixels);
+}
+
 std::string leaf_texture() {
     TexturePixels pixels(128, 128, 4);
     for (int y = 0; y < pixels.height; ++y) {

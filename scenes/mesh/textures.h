@@ -1,4 +1,5 @@
-// Procedural textures, as PNG files in memory. All repeat without a seam. Grey ones are tinted by the material.
+// Procedural textures, as PNG files in memory. All but the flag repeat without a seam. Grey ones are tinted by the
+// material.
 #pragma once
 
 #include <string>
@@ -23,6 +24,10 @@ std::string sky_texture();
 std::string slab_texture();
 /// A colour texture, 2:1, equirectangular: land with detail at every scale, sea, ice, a graticule.
 std::string globe_texture();
+/// A colour texture: woven cloth, dark stripes across v on white, a thin line along v.
+std::string stripe_texture();
+/// A colour texture of a flag whose mast is at the left edge.
+std::string flag_texture();
 /// A texture of colour and coverage (alpha mask): a twig with leaves.
 std::string leaf_texture();
 

@@ -79,6 +79,42 @@ std::uint32_t largest_index(tinygltf::Model const& model, tinygltf::Accessor con
     return largest;
 }
 
+/// Four bytes a vertex, as JOINTS_0 and WEIGHTS_0 have them.
+std::vector<int> bytes_of(tinygltf::Model const& model, int index) {
+    tinygltf::Accessor const& accessor = accessor_at(model, index);
+    EXPECT_EQ(accessor.componentType, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE);
+    EXPECT_EQ(accessor.type, TINYGLTF_TYPE_VEC4);
+    unsigned char const* const data = data_of(model, accessor);
+    return {data, data + accessor.count * 4};
+}
+
+/// Checks that weights sum to one and that their joints are some of the skin's.
+void check_joint_weights(tinygltf::Model const& model, tinygltf::Primitive const& primitive, std::size_t vertices,
+                         std::size_t joint_count) {
+    std::vector<int> const joints = bytes_of(model, primitive.attributes.at("JOINTS_0"));
+    std::vector<int> const weights = bytes_of(model, primitive.attributes.at("WEIGHTS_0"));
+    ASSERT_EQ(joints.size(), vertices * 4);
+    ASSERT_EQ(weights.size(), vertices * 4);
+    EXPECT_LT(*std::max_element(joints.begin(), joints.end()), static_cast<int>(joint_count));
+    for (std::size_t i = 0; i < weights.size(); i += 4) {
+        ASSERT_EQ(weights[i] + weights[i + 1] + weights[i + 2] + weights[i + 3], 255);
+    }
+}
+
+void check_skins(tinygltf::Model const& model) {
+    for (tinygltf::Node const& node : model.nodes) {
+        if (node.skin >= 0) {
+            tinygltf::Skin const& skin = model.skins.at(static_cast<std::size_t>(node.skin));
+            EXPECT_EQ(floats_of(model, skin.inverseBindMatrices).size(), skin.joints.size() * 16);
+            for (tinygltf::Primitive const& primitive :
+                 model.meshes.at(static_cast<std::size_t>(node.mesh)).primitives) {
+                std::size_t const vertices = accessor_at(model, primitive.attributes.at("POSITION")).count;
+                check_joint_weights(model, primitive, vertices, skin.joints.size());
+            }
+        }
+    }
+}
+
 void check_primitive(tinygltf::Model const& model, tinygltf::Primitive const& primitive) {
     std::size_t const vertices = accessor_at(model, primitive.attributes.at("POSITION")).count;
     tinygltf::Accessor const& indices = accessor_at(model, primitive.indices);
@@ -102,6 +138,19 @@ void check_primitive(tinygltf::Model const& model, tinygltf::Primitive const& pr
     if (primitive.attributes.contains("COLOR_0")) {
         EXPECT_EQ(accessor_at(model, primitive.attributes.at("COLOR_0")).count, vertices);
     }
+    for (std::map<std::string, int> const& target : primitive.targets) {
+        EXPECT_EQ(floats_of(model, target.at("POSITION")).size(), vertices * 3);
+        EXPECT_EQ(floats_of(model, target.at("NORMAL")).size(), vertices * 3);
+    }
+}
+
+/// Numbers in a key of the channel.
+std::size_t width_of(tinygltf::Model const& model, tinygltf::AnimationChannel const& channel) {
+    if (channel.target_path == "weights") {
+        int const mesh = model.nodes.at(static_cast<std::size_t>(channel.target_node)).mesh;
+        return model.meshes.at(static_cast<std::size_t>(mesh)).primitives.at(0).targets.size();
+    }
+    return channel.target_path == "rotation" ? 4 : 3;
 }
 
 /// Checks that every key is finite and in order; returns the last time.
@@ -116,9 +165,9 @@ double check_animation(tinygltf::Model const& model, tinygltf::Animation const& 
         EXPECT_EQ(times.front(), 0);
         last = std::max(last, double(times.back()));
         std::vector<float> const values = floats_of(model, sampler.output);
-        std::size_t const width = channel.target_path == "rotation" ? 4 : 3;
+        std::size_t const width = width_of(model, channel);
         EXPECT_EQ(values.size(), times.size() * width);
-        for (std::size_t i = 0; width == 4 && i < values.size(); i += 4) {
+        for (std::size_t i = 0; channel.target_path == "rotation" && i < values.size(); i += 4) {
             EXPECT_NEAR(std::hypot(std::hypot(values[i], values[i + 1]), std::hypot(values[i + 2], values[i + 3])), 1,
                         1e-4);
         }
@@ -151,6 +200,7 @@ TEST_P(SceneFile, IsAConsistentScene) {
             check_primitive(model, primitive);
         }
     }
+    check_skins(model);
     for (tinygltf::Image const& image : model.images) {
         EXPECT_GE(image.width, 64);
         EXPECT_LE(image.width, 512);
@@ -169,7 +219,7 @@ TEST(SceneTable, NamesTheScenesOfTheEvaluation) {
     }
     EXPECT_EQ(names, (std::set<std::string>{"vehicle_fixed", "vehicle_chase", "vehicle_flyby", "vehicle_approach",
                                             "vehicle_crossing", "windmill", "globe", "terrain", "stop", "flicker",
-                                            "teleport", "foliage", "dim"}));
+                                            "teleport", "foliage", "dim", "walker", "flag", "fan"}));
     EXPECT_LT(sum, largest_sum);
 }
 
