@@ -18,7 +18,7 @@ std::string Attempts::message() const {
         return "connecting to " + server + " ...";
     }
     return (is_refused_ ? "cannot connect to " + server : "waiting for " + server + " ...") + "\n\n" + failure_ +
-           "\n\nR or Enter: try now     Esc: quit";
+           "\n\nR or Enter: try now     Ctrl+Q: quit";
 }
 
 void Attempts::hurry() {

@@ -1,10 +1,13 @@
 #include "client/window/start_panel.h"
 
 #include <algorithm>
+#include <chrono>
 #include <iostream>
 
 #include "client/processes/end_signals.h"
 #include "client/window/attempts.h"
+#include "client/window/escape_key.h"
+#include "client/window/overlay/help_text.h"
 #include "client/window/overlay/overlay.h"
 #include "common/error.h"
 
@@ -20,8 +23,12 @@ void show_choice(Attempts const* attempts, SceneOpener const& opener, std::strin
         content.message = attempts->message() + (complaint.empty() ? "" : "\n\n" + complaint);
     } else if (opener.opening().empty()) {
         content.message = (complaint.empty() ? "Connect to framelet-server, or drop a scene file here." : complaint) +
-                          "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Esc: quit";
+                          "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Ctrl+Q: quit";
     }
+}
+
+double seconds_now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 } // namespace
@@ -45,6 +52,21 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             complaint = error.what();
         }
     };
+    EscapeKey escape;
+    double note_until = 0;
+    // True where the command ends the program; where it is an Esc, carries that out.
+    auto const is_quit = [&](Command command) {
+        if (command != Command::escape) {
+            return command == Command::quit;
+        }
+        EscapeLeaves const leaves = escape.press({.full_screen = window.is_fullscreen()}, seconds_now());
+        if (leaves == EscapeLeaves::full_screen) {
+            window.toggle_fullscreen();
+        } else {
+            note_until = seconds_now() + EscapeKey::most_pause;
+        }
+        return leaves == EscapeLeaves::program;
+    };
     while (!is_told_to_end()) {
         if (attempts) {
             if (auto core = attempts->poll(is_from_command_line && opener.opening().empty())) {
@@ -64,6 +86,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         OverlayContent content;
         opener.show(content);
         show_choice(attempts ? &*attempts : nullptr, opener, complaint, content);
+        content.note = seconds_now() < note_until ? escape_note() : "";
         if (!content.message.empty() && (!attempts || attempts->has_failed() || !is_from_command_line)) {
             content.address = {start.address.value_or(usual_server), start.recent, !attempts && !opener.can_reopen()};
         }
@@ -81,8 +104,10 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
                 try_server(*asked.address);
                 continue;
             }
-            if (!asked.commands.empty()) { // Esc in the field
-                return {};
+            for (Command const command : asked.commands) { // Esc in the field
+                if (is_quit(command)) {
+                    return {};
+                }
             }
         }
         // The time between two looks at whether an attempt is due or has ended.
@@ -94,7 +119,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         }
         frames = input.touched_overlay ? 3 : input.redraw ? std::max(frames, 1) : frames;
         for (Command const command : input.commands) {
-            if (command == Command::quit || command == Command::escape) {
+            if (is_quit(command)) {
                 return {};
             }
             if (command == Command::toggle_fullscreen) {

@@ -361,7 +361,7 @@ OverlayContent Viewer::overlay_content() {
         {out.sign, interrupted_ && lost_.empty(), window_.has_mouse_look(),
          recorder_ ? with_keys(progress_text(recorder_->progress()), Command::toggle_recording) : std::string()});
     if (!lost_.empty()) {
-        out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Esc: quit";
+        out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Ctrl+Q: quit";
         out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
     } else if (picture_.rgba.empty()) {
         out.message = "waiting for the first picture ...";

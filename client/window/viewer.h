@@ -15,6 +15,7 @@
 #include "client/video/recorder.h"
 #include "client/window/attempts.h"
 #include "client/window/connection.h"
+#include "client/window/escape_key.h"
 #include "client/window/kept/bookmarks.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/overlay/overlay.h"
@@ -50,6 +51,7 @@ private:
     void apply(OverlayActions const& asked);
     void take_pivot(WindowInput const& input);
     void apply(Command command);
+    void escape();
     std::string clock_lacks() const;
     void ask_clock(std::uint8_t fields, ClockState const& state);
     void step_clock(double seconds);
@@ -128,6 +130,7 @@ private:
     double recording_since_ = 0;
     std::string note_;
     double note_until_ = 0;
+    EscapeKey escape_;
     bool quit_ = false;
     Clock::time_point const start_ = Clock::now();
 };

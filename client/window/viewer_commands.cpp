@@ -110,6 +110,29 @@ void Viewer::apply(OverlayActions const& asked) {
     }
 }
 
+void Viewer::escape() {
+    switch (escape_.press({window_.has_mouse_look(), overlay_.has_menu(), show_help_, window_.is_fullscreen()},
+                          seconds_now())) {
+    case EscapeLeaves::mouse_look:
+        window_.set_mouse_look(false);
+        break;
+    case EscapeLeaves::menu:
+        overlay_.close_menu();
+        break;
+    case EscapeLeaves::help:
+        show_help_ = false;
+        break;
+    case EscapeLeaves::full_screen:
+        window_.toggle_fullscreen();
+        break;
+    case EscapeLeaves::nothing_yet:
+        say(escape_note(), EscapeKey::most_pause);
+        break;
+    case EscapeLeaves::program:
+        quit_ = true;
+    }
+}
+
 void Viewer::apply(Command command) {
     ClockState clock = core_->clock();
     switch (command) {
@@ -120,12 +143,7 @@ void Viewer::apply(Command command) {
         window_.set_mouse_look(!window_.has_mouse_look());
         break;
     case Command::escape:
-        if (window_.has_mouse_look()) {
-            window_.set_mouse_look(false);
-            break;
-        }
-        quit_ = !overlay_.has_menu();
-        overlay_.close_menu();
+        escape();
         break;
     case Command::reset:
     case Command::reconnect:

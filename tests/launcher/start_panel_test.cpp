@@ -34,9 +34,9 @@ protected:
         }
         return holds();
     }
-    /// Closes the window by Esc; the exit code.
+    /// Closes the window by its key; the exit code.
     int close() {
-        input({"key", "--delay", "200", "Escape"});
+        input({"key", "--delay", "200", "ctrl+q"});
         return program_->wait(patience);
     }
 };
@@ -98,6 +98,18 @@ TEST_F(StartPanelTest, ClosingItIsFine) {
     EXPECT_TRUE(has(memory(), "640")) << memory();
     start_viewer({nobody});
     EXPECT_EQ(close(), 0) << program_->errors();
+}
+
+TEST_F(StartPanelTest, EscapeAsksOnceWhetherToQuit) {
+    start_viewer({nobody});
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    EXPECT_TRUE(program_->running()) << program_->errors();
+    EXPECT_TRUE(eventually([&] { // a key may come late, in a machine with much to do
+        input({"key", "--delay", "300", "Escape", "Escape"});
+        return !program_->running();
+    }));
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
 }
 
 TEST_F(StartPanelTest, ASignalEndsItAndTheSettingsAreKept) {

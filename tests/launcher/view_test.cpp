@@ -113,7 +113,7 @@ TEST_F(ViewTest, EndsWithItsWindow) {
     view();
     pid_t const served_by = server();
     EXPECT_TRUE(eventually([&] { // a key may come before the window has them
-        input({"key", "Escape"});
+        input({"key", "ctrl+q"});
         return !program_->running();
     }));
     EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
@@ -143,7 +143,7 @@ TEST_F(ViewTest, SaysWhereTheServerHasGoneAndStartsAnother) {
         std::string const said = program_->errors();
         return said.find("Killed") != said.rfind("Killed");
     }));
-    input({"key", "--delay", "200", "Escape"});
+    input({"key", "--delay", "200", "ctrl+q"});
     EXPECT_EQ(program_->wait(patience), 1) << program_->errors();
 }
 

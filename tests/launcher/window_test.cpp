@@ -91,6 +91,22 @@ TEST_F(WindowTest, TheMouseLooksAroundUntilEscapeEndsThat) {
     EXPECT_EQ(newest_camera(), still);
 }
 
+TEST_F(WindowTest, EscapeLeavesTheFullScreenAndAsksOnceWhetherToQuit) {
+    newest_camera(); // the window hears keys
+    press("F11");
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(2s);
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(2s);
+    newest_camera(); // it is still there
+    EXPECT_TRUE(eventually([&] {
+        input({"key", "--delay", "300", "Escape", "Escape"});
+        return !program_->running();
+    }));
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+    EXPECT_FALSE(nlohmann::json::parse(memory()).at("fullscreen").get<bool>());
+}
+
 TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
     fs::path const folder = folder_.path() / "framelet" / "cameras";
     std::string name;

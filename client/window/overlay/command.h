@@ -8,7 +8,7 @@ namespace framelet {
 /// A command that a key, or a button of the overlay, stands for.
 enum class Command : std::uint8_t {
     quit,
-    escape, ///< close a menu, or else quit
+    escape, ///< as `EscapeKey`
     reset,
     reconnect,
     play_or_pause,

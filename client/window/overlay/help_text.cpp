@@ -50,7 +50,8 @@ constexpr Line others[] = {
     {Command::toggle_time_line, "the bar at the lower edge, or not"},
     {Command::toggle_fullscreen, "full screen"},
     {Command::toggle_help, "this help"},
-    {Command::escape, "close a menu, or quit"},
+    {Command::escape, "leave mouse look, menu, help, full screen; twice: quit"},
+    {Command::quit, "quit at once"},
 };
 
 void add(TextRows& rows, std::span<Line const> lines) {
@@ -60,6 +61,10 @@ void add(TextRows& rows, std::span<Line const> lines) {
 }
 
 } // namespace
+
+std::string escape_note() {
+    return with_keys("Esc once more quits", Command::quit);
+}
 
 TextRows help_rows(std::string const& clock_lacks) {
     TextRows rows{

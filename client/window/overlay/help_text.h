@@ -17,6 +17,9 @@ inline constexpr char const* watching_text = "another viewer controls the scene'
 /// Text that is shown while the mouse turns the head.
 inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D Q E fly; a click or Esc ends it";
 
+/// Text that is shown after an Esc that leaves nothing yet.
+std::string escape_note();
+
 /// The rows of the help. `clock_lacks`: why the keys that set the scene's clock have no effect; empty: they have one.
 TextRows help_rows(std::string const& clock_lacks);
 

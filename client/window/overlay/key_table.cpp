@@ -12,9 +12,11 @@ namespace {
 
 constexpr KeyModifiers alone{};
 constexpr KeyModifiers shift{.shift = true};
+constexpr KeyModifiers control{.control = true};
 constexpr KeyModifiers alt{.alt = true};
 
 constexpr std::array unnumbered{
+    KeyMeaning{GLFW_KEY_Q, control, Command::quit, false},
     KeyMeaning{GLFW_KEY_ESCAPE, alone, Command::escape, false},
     KeyMeaning{GLFW_KEY_R, alone, Command::reset, false},
     KeyMeaning{GLFW_KEY_ENTER, alone, Command::reconnect, false},
@@ -132,7 +134,7 @@ std::string key_names(Command command) {
             continue;
         }
         out += out.empty() ? "" : " or ";
-        out += meaning.with.alt ? "Alt+" : meaning.with.shift ? "Shift+" : "";
+        out += meaning.with.alt ? "Alt+" : meaning.with.control ? "Ctrl+" : meaning.with.shift ? "Shift+" : "";
         out += name_of_key(meaning.key);
     }
     return out;

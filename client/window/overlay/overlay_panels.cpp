@@ -263,7 +263,7 @@ void draw_message(std::string const& text, AddressField const* field, std::strin
             bool const entered =
                 ImGui::InputText("##address", buffer.data(), buffer.size(),
                                  ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-            // Esc gives back what was there, and quits where nothing was typed.
+            // Esc gives back what was there; where nothing was typed it is as elsewhere.
             if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
                 typed == buffer.data()) {
                 frame.actions.commands.push_back(Command::escape);
