@@ -335,7 +335,7 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
 OverlayContent Viewer::overlay_content() {
     OverlayContent out;
     if (show_help_) {
-        out.help = help_rows(clock_lacks());
+        out.help = help_groups(clock_lacks());
     }
     if (memory_.shows_statistics) {
         out.statistics = figures_;

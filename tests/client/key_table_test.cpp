@@ -22,7 +22,10 @@ TEST(KeyTable, NoKeyMeansTwoThings) {
 }
 
 TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
-    TextRows const help = help_rows("");
+    TextRows help;
+    for (HelpGroup const& group : help_groups("")) {
+        help.insert(help.end(), group.rows.begin(), group.rows.end());
+    }
     for (int i = 0; i <= static_cast<int>(numbered(Command::bookmark, numbered_cameras - 1)); ++i) {
         auto const command = static_cast<Command>(i);
         std::string const keys = key_names(command);
@@ -38,6 +41,37 @@ TEST(KeyTable, TheHelpNamesEveryOverlay) {
     for (char const* const name : drawn_over_names) {
         EXPECT_NE(help_text(Command::next_overlay).find(name), std::string::npos) << name;
     }
+}
+
+TEST(HelpText, WhatOneNeedsFirstComesFirst) {
+    std::vector<HelpGroup> const groups = help_groups("");
+    std::string first;
+    for (auto const& [keys, text] : groups.front().rows) {
+        first += keys + "\n";
+    }
+    for (std::string const& keys : {std::string("left drag"), std::string("wheel"), key_names(Command::fit_scene),
+                                    key_names(Command::toggle_help), key_names(Command::quit)}) {
+        EXPECT_NE(first.find(keys), std::string::npos) << keys;
+    }
+    for (HelpGroup const& group : groups) {
+        EXPECT_FALSE(group.title.empty());
+        EXPECT_FALSE(group.rows.empty()) << group.title;
+    }
+}
+
+TEST(HelpText, TwoColumnsAreAboutAsHigh) {
+    auto const of = [](std::vector<std::size_t> const& sizes) {
+        std::vector<HelpGroup> out;
+        for (std::size_t const size : sizes) {
+            out.push_back({"title", TextRows(size)});
+        }
+        return left_groups(out);
+    };
+    EXPECT_EQ(of({}), 0u);
+    EXPECT_EQ(of({3}), 1u);
+    EXPECT_EQ(of({3, 3}), 1u);
+    EXPECT_EQ(of({3, 4}), 2u) << "the left one is no lower";
+    EXPECT_EQ(of({5, 1, 1, 1}), 1u);
 }
 
 TEST(KeyTable, ShiftCountsWhereItMeansSomething) {

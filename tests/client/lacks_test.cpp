@@ -35,13 +35,20 @@ TEST(Lacks, WhatIsThereIsNotLacking) {
 }
 
 TEST(Lacks, TheHelpSaysWhyTheClocksKeysDoNothing) {
+    auto const rows_with = [](std::string const& lacks) {
+        TextRows out;
+        for (HelpGroup const& group : help_groups(lacks)) {
+            out.insert(out.end(), group.rows.begin(), group.rows.end());
+        }
+        return out;
+    };
     auto const says = [](TextRows const& rows, std::string const& text) {
         return std::ranges::any_of(rows, [&](auto const& row) { return row.second == text; });
     };
     for (std::string const& reason : {clock_lacks(false, true, false), clock_lacks(false, false, true)}) {
-        EXPECT_FALSE(says(help_rows(""), reason));
-        EXPECT_TRUE(says(help_rows(reason), reason));
-        EXPECT_LT(help_rows(reason).size(), help_rows("").size());
+        EXPECT_FALSE(says(rows_with(""), reason));
+        EXPECT_TRUE(says(rows_with(reason), reason));
+        EXPECT_LT(rows_with(reason).size(), rows_with("").size());
     }
 }
 

@@ -1,6 +1,8 @@
-// The help that F1 shows. In: why some commands have no effect now. Out: rows of keys and what they do, in two columns.
+// The help that F1 shows. In: why some commands have no effect now. Out: groups of keys and what they do.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,6 +13,12 @@ namespace framelet {
 
 using TextRows = std::vector<std::pair<std::string, std::string>>; ///< name and value
 
+struct HelpGroup {
+    std::string title;
+    TextRows rows;
+    bool operator==(HelpGroup const&) const = default;
+};
+
 /// Text that is shown where another viewer has the scene's clock at its disposal.
 inline constexpr char const* watching_text = "another viewer controls the scene's clock";
 
@@ -20,8 +28,13 @@ inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D 
 /// Text that is shown after an Esc that leaves nothing yet.
 std::string escape_note();
 
-/// The rows of the help. `clock_lacks`: why the keys that set the scene's clock have no effect; empty: they have one.
-TextRows help_rows(std::string const& clock_lacks);
+/// The help: what one needs first comes first. `clock_lacks`: why the keys that set the scene's clock have no effect;
+/// empty: they have one.
+std::vector<HelpGroup> help_groups(std::string const& clock_lacks);
+
+/// The number of groups that stand on the left where the help has two columns: the least with which that is no lower
+/// than the right one.
+std::size_t left_groups(std::span<HelpGroup const> groups);
 
 /// The help's words for one command, for the tooltip of what does the same by mouse. All numbered cameras of a kind
 /// have the same.

@@ -69,7 +69,7 @@ struct AddressField {
 };
 
 struct OverlayContent {
-    TextRows help; ///< empty: not shown
+    std::vector<HelpGroup> help; ///< empty: not shown
     std::optional<StatisticsPanel> statistics;
     std::optional<Legend> legend;
     std::string sign; ///< small, at the upper edge; empty: none

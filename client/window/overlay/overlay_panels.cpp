@@ -69,6 +69,27 @@ void draw_ramp(Legend const& legend) {
     ImGui::TextUnformatted(legend.oldest.c_str());
 }
 
+/// Draws groups below each other. Widths of the names and of what they do, pixels.
+void help_column(std::span<HelpGroup const> groups, float name_width, float text_width) {
+    ImGui::BeginGroup();
+    for (HelpGroup const& group : groups) {
+        ImGui::TextDisabled("%s", group.title.c_str());
+        if (ImGui::BeginTable(group.title.c_str(), 2, ImGuiTableFlags_SizingFixedFit)) {
+            ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, name_width);
+            ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthFixed, text_width);
+            for (auto const& [name, text] : group.rows) {
+                name_cell(name);
+                ImGui::TableNextColumn();
+                ImGui::PushTextWrapPos(0);
+                ImGui::TextUnformatted(text.c_str());
+                ImGui::PopTextWrapPos();
+            }
+            ImGui::EndTable();
+        }
+    }
+    ImGui::EndGroup();
+}
+
 /// The use of the mouse on a panel.
 enum class PanelKind {
     told, ///< none
@@ -182,43 +203,33 @@ void draw_legend(Legend const& legend, OverlayFrame& frame) {
     ImGui::End();
 }
 
-void draw_help(TextRows const& rows, OverlayFrame& frame) {
+void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame) {
     ImGuiStyle const& style = ImGui::GetStyle();
     ImVec2 const window = ImGui::GetIO().DisplaySize;
     float const font = ImGui::GetFontSize();
     ImVec2 const room(window.x - 2 * font, window.y - frame.bar_height - 2 * font);
     float name_width = 0;
     float text_width = 0;
-    for (auto const& [name, text] : rows) {
-        name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
-        text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
+    for (HelpGroup const& group : groups) {
+        for (auto const& [name, text] : group.rows) {
+            name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
+            text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
+        }
     }
-    // Two columns of rows where there is room for that with what they say in two lines; what is still higher than the
+    // Two columns of groups where there is room for that with what they say in two lines; what is still higher than the
     // window is turned by the wheel.
-    float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize;
+    float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize - 2 * font;
     float const gaps = 2 * style.CellPadding.x;
     bool const is_wide = inside >= 2 * (name_width + text_width / 2 + 2 * gaps);
-    std::size_t const columns = is_wide ? 2 : 1;
+    int const columns = is_wide ? 2 : 1;
     float const column = inside / static_cast<float>(columns) - name_width - 2 * gaps;
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), room);
     if (begin_panel("help", {0.5f, 0}, 0.9f, frame, PanelKind::scrolls)) {
-        std::size_t const lines = (rows.size() + columns - 1) / columns;
-        if (ImGui::BeginTable("help table", 2 * static_cast<int>(columns), ImGuiTableFlags_SizingFixedFit)) {
-            for (std::size_t i = 0; i < columns; ++i) {
-                ImGui::TableSetupColumn("keys");
-                ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthFixed, std::min(column, text_width));
-            }
-            for (std::size_t i = 0; i < lines; ++i) {
-                ImGui::TableNextRow();
-                for (std::size_t k = i; k < rows.size(); k += lines) {
-                    name_cell(rows[k].first);
-                    ImGui::TableNextColumn();
-                    ImGui::PushTextWrapPos(0);
-                    ImGui::TextUnformatted(rows[k].second.c_str());
-                    ImGui::PopTextWrapPos();
-                }
-            }
-            ImGui::EndTable();
+        std::size_t const left = is_wide ? left_groups(groups) : groups.size();
+        help_column(groups.first(left), name_width, std::min(column, text_width));
+        if (is_wide) {
+            ImGui::SameLine(0, 2 * font);
+            help_column(groups.subspan(left), name_width, std::min(column, text_width));
         }
         if (ImGui::GetScrollMaxY() > 0) { // else drags go through it, to the camera
             take_area(frame);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,7 +45,7 @@ std::string tip_of(Command command);
 void draw_bar(OverlayContent const& content, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
-void draw_help(TextRows const& rows, OverlayFrame& frame);
+void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame);
 /// Draws a panel with a text. `progress`, [0, 1]: a bar below. At the right end of the upper edge it keeps clear of
 /// what takes the left one, as far as there is room.
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
