@@ -304,13 +304,17 @@ void Viewer::watch_opener() {
 /// Takes the figures of the overlay, also while nobody looks at them: plots show what was before.
 void Viewer::take_figures() {
     ClientStatistics const statistics = core_->statistics();
+    figures_.rows = figure_rows(statistics, time_line(), core_->controls());
     if (!meter_.update(seconds_now(), statistics.bytes) && !figures_.plots.empty()) {
         return;
     }
     history_.add(meter_, statistics);
     figures_.plots = history_.plots();
-    figures_.rows = figure_rows(statistics, core_->clock(), core_->controls());
     figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size(), painter_text());
+}
+
+TimeLine Viewer::time_line() const {
+    return {core_->clock(), core_->welcome().animation_duration, clock_lacks(), settings_.exposure_ev};
 }
 
 CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
@@ -343,7 +347,7 @@ OverlayContent Viewer::overlay_content() {
     }
     if (memory_.shows_bar) {
         Welcome const welcome = core_->welcome();
-        out.time_line = {core_->clock(), welcome.animation_duration, clock_lacks(), settings_.exposure_ev};
+        out.time_line = time_line();
         out.cameras = camera_menu(welcome);
         out.bias = settings_.bias;
         out.overlays = {drawn_over_, confidence_lacks(settings_.reproject)};

@@ -79,6 +79,7 @@ private:
     Picture const& shown_picture();
     std::string painter_text() const;
     void take_figures();
+    TimeLine time_line() const;
     CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
     void remember_exposure();

@@ -279,7 +279,7 @@ void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
         return;
     }
     core_->request_clock({fields, state});
-    say("clock " + clock_text(core_->clock()));
+    say("clock " + clock_text(time_line()));
 }
 
 void Viewer::step_clock(double seconds) {

@@ -64,15 +64,18 @@ TEST(OverlayText, TheSignSaysThatAConnectionIsTriedForAgain) {
 }
 
 TEST(OverlayText, ClockAndStatisticsReadWell) {
-    EXPECT_EQ(clock_text({12.345, true, 2}), "12.35 s, playing at 2x");
-    EXPECT_EQ(clock_text({0, false, 0.5f}), "0.00 s, paused at 0.5x");
+    EXPECT_EQ(clock_text({{12.345, true, 2}, 5}), "2.35 of 5.00 s, playing at 2x") << "as the bar has it";
+    EXPECT_EQ(clock_text({{0, false, 0.5f}, 5}), "0.00 of 5.00 s, paused at 0.5x");
+    EXPECT_EQ(clock_text({{3, true, 1}, 5}), "3.00 of 5.00 s, playing");
+    EXPECT_EQ(clock_text({{3, true, 1}, 0}), "nothing moves in this scene");
     ClientStatistics statistics;
     statistics.samples = 1000;
     statistics.bytes = 250;
     statistics.batches = 1;
-    TextRows const rows = figure_rows(statistics, {}, true);
+    TimeLine const time{{}, 4};
+    TextRows const rows = figure_rows(statistics, time, true);
     EXPECT_EQ(value_of(rows, "done"), "0% of the picture");
-    EXPECT_EQ(value_of(rows, "clock"), "0.00 s, paused at 1x");
+    EXPECT_EQ(value_of(rows, "clock"), "0.00 of 4.00 s, paused");
     TextRows const details = detail_rows(statistics, RateMeter(), {640, 360}, "processor");
     EXPECT_EQ(value_of(details, "picture"), "640x360");
     EXPECT_EQ(value_of(details, "received"), "1 batch, 0 framelets, 0.25 B/sample");
@@ -80,8 +83,8 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     statistics.lag_seconds = 0.1;
     statistics.coverage = 1;
     statistics.converged = true;
-    TextRows const late = figure_rows(statistics, {}, true);
-    EXPECT_EQ(value_of(late, "clock"), "0.00 s, paused at 1x; the scene 100 ms late");
+    TextRows const late = figure_rows(statistics, time, true);
+    EXPECT_EQ(value_of(late, "clock"), "0.00 of 4.00 s, paused; the scene 100 ms late");
     EXPECT_EQ(value_of(late, "done"), "100% of the picture, as good as it gets");
 }
 

@@ -22,6 +22,9 @@ struct HelpGroup {
 /// Text that is shown where another viewer has the scene's clock at its disposal.
 inline constexpr char const* watching_text = "another viewer controls the scene's clock";
 
+/// Text that is shown where no scene's clock moves anything.
+inline constexpr char const* nothing_moves_text = "nothing moves in this scene";
+
 /// Text that is shown while the mouse turns the head.
 inline constexpr char const* mouse_look_text = "the mouse looks around, W A S D Q E fly; a click or Esc ends it";
 

@@ -84,10 +84,10 @@ std::vector<Plot> StatisticsHistory::plots() const {
     return out;
 }
 
-TextRows figure_rows(ClientStatistics const& s, ClockState const& clock, bool controls) {
+TextRows figure_rows(ClientStatistics const& s, TimeLine const& time, bool controls) {
     return {
         {"done", fixed(s.coverage * 100, 0, "% of the picture") + (s.converged ? ", as good as it gets" : "")},
-        {"clock", clock_text(clock) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
+        {"clock", clock_text(time) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
                       (controls ? "" : std::string("; ") + watching_text)},
     };
 }
@@ -187,10 +187,16 @@ std::string opening_text(std::string const& scene, std::string const& stage) {
     return scene.empty() ? "" : "opening " + scene + (stage.empty() ? " ..." : ": " + stage);
 }
 
-std::string clock_text(ClockState const& clock) {
+std::string clock_text(TimeLine const& time) {
+    if (time.duration <= 0) {
+        return nothing_moves_text;
+    }
     std::ostringstream out;
-    out << std::fixed << std::setprecision(2) << clock.time << " s, " << (clock.playing ? "playing" : "paused");
-    out << std::defaultfloat << " at " << clock.speed << "x";
+    out << std::fixed << std::setprecision(2) << time.place() << " of " << time.duration << " s, "
+        << (time.clock.playing ? "playing" : "paused");
+    if (time.clock.speed != 1) {
+        out << std::defaultfloat << " at " << time.clock.speed << "x";
+    }
     return out.str();
 }
 
