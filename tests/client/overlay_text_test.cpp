@@ -74,7 +74,7 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     statistics.batches = 1;
     TimeLine const time{{}, 4};
     TextRows const rows = figure_rows(statistics, time, true);
-    EXPECT_EQ(value_of(rows, "done"), "0% of the picture");
+    EXPECT_EQ(value_of(rows, "done"), "coarse, 0% known");
     EXPECT_EQ(value_of(rows, "clock"), "0.00 of 4.00 s, paused");
     TextRows const details = detail_rows(statistics, RateMeter(), {640, 360}, "processor");
     EXPECT_EQ(value_of(details, "picture"), "640x360");
@@ -82,10 +82,12 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(value_of(details, "round trip"), "not measured");
     statistics.lag_seconds = 0.1;
     statistics.coverage = 1;
+    statistics.is_fine = true;
+    EXPECT_EQ(value_of(figure_rows(statistics, time, true), "done"), "refining, 100% known");
     statistics.converged = true;
     TextRows const late = figure_rows(statistics, time, true);
     EXPECT_EQ(value_of(late, "clock"), "0.00 of 4.00 s, paused; the scene 100 ms late");
-    EXPECT_EQ(value_of(late, "done"), "100% of the picture, as good as it gets");
+    EXPECT_EQ(value_of(late, "done"), "finished");
 }
 
 TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {

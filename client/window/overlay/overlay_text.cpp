@@ -25,6 +25,11 @@ std::string fixed(double value, int digits, char const* unit) {
     return out.str();
 }
 
+std::string done_text(ClientStatistics const& s) {
+    std::string const state = name_of(s.state());
+    return s.state() == PictureState::finished ? state : state + ", " + fixed(s.coverage * 100, 0, "% known");
+}
+
 } // namespace
 
 void RateMeter::frame(double seconds_taken) {
@@ -86,7 +91,7 @@ std::vector<Plot> StatisticsHistory::plots() const {
 
 TextRows figure_rows(ClientStatistics const& s, TimeLine const& time, bool controls) {
     return {
-        {"done", fixed(s.coverage * 100, 0, "% of the picture") + (s.converged ? ", as good as it gets" : "")},
+        {"done", done_text(s)},
         {"clock", clock_text(time) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
                       (controls ? "" : std::string("; ") + watching_text)},
     };
@@ -117,7 +122,9 @@ std::string figure_tip(std::string const& name) {
         {"network", "what is received in batches of framelets"},
         {"server renders", "samples a second, for all viewers"},
         {"server busy", "the share of the last second in which the server had something to do for viewers"},
-        {"done", "how much of the picture is known at all"},
+        {"done",
+         "coarse: in places with fewer samples than pixels, as while anything moves; refining: a sample a pixel "
+         "or more, and better ones to come; finished: exact. Known is what any sample shows"},
         {"clock", "the scene's: Space lets it run and stops it"},
         {"picture", "the window's size, pixels"},
         {"painted by", "what paints that which moves: the graphics card, or the processor and why"},
