@@ -203,6 +203,7 @@ std::string Viewer::painter_text() const {
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
     double const until_seen = core_->making_seconds() + showing_.expected();
+    picture_state_ = core_->statistics().state(); // before: what comes meanwhile need not be in the picture
     bool const changed = make_picture(Clock::now() + DisplayTiming::duration(until_seen));
     made_ = seconds_now();
     if (changed) {

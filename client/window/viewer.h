@@ -114,6 +114,7 @@ private:
     CanvasChoice painter_;
     Picture picture_; ///< where it is not on the canvas; else it has its size alone
     bool is_on_canvas_ = false;
+    PictureState picture_state_ = PictureState::coarse; ///< at least so far had the picture come
     double made_ = 0; ///< when the picture was made, by `seconds_now`
     MakingTime showing_; ///< from when a picture is made until it is on the display
     std::vector<PixelRect> changed_;

@@ -347,7 +347,7 @@ void Viewer::save_screenshot(bool with_depth) {
         } else {
             write_png(file, shown_picture());
         }
-        say("saved " + file.string() + lacks, long_note_seconds);
+        say(saved_text(file, lacks, picture_state_), long_note_seconds);
     } catch (InputError const& failure) {
         say(failure.what(), long_note_seconds);
     }

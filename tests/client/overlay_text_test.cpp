@@ -90,6 +90,13 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(value_of(late, "done"), "finished");
 }
 
+TEST(OverlayText, SaysThatASavedPictureWasNotFinished) {
+    EXPECT_EQ(saved_text("a.png", "", PictureState::finished), "saved a.png");
+    EXPECT_EQ(saved_text("a.png", "", PictureState::coarse), "saved a.png; it was not finished: still coarse");
+    EXPECT_EQ(saved_text("a.exr", ", without depth", PictureState::refining),
+              "saved a.exr, without depth; it was not finished: still refining");
+}
+
 TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {
     StatisticsHistory history;
     EXPECT_EQ(history.plots().front().value, "0 a second");

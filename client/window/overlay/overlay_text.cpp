@@ -194,6 +194,11 @@ std::string opening_text(std::string const& scene, std::string const& stage) {
     return scene.empty() ? "" : "opening " + scene + (stage.empty() ? " ..." : ": " + stage);
 }
 
+std::string saved_text(std::string const& file, std::string const& lacks, PictureState state) {
+    return "saved " + file + lacks +
+           (state == PictureState::finished ? "" : std::string("; it was not finished: still ") + name_of(state));
+}
+
 std::string clock_text(TimeLine const& time) {
     if (time.duration <= 0) {
         return nothing_moves_text;

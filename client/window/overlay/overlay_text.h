@@ -77,6 +77,8 @@ struct Signs {
     std::string recording = {}; ///< of the film that is being recorded; empty: none is
 };
 std::string sign_text(Signs const& signs);
+/// What is said of a picture that was saved. `lacks`: what is missing in it. `state`: of the picture as it was then.
+std::string saved_text(std::string const& file, std::string const& lacks, PictureState state);
 /// The clock as text: "1.50 of 4.00 s, playing at 2x".
 std::string clock_text(TimeLine const& time);
 /// The lag as text: "the scene 100 ms late".
