@@ -1,5 +1,7 @@
 // The cameras that a viewer looks through: those of the scene, bookmarks, and its own as a file.
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include "client/window/kept/user_files.h"
 #include "client/window/overlay/key_table.h"
@@ -34,25 +36,31 @@ void Viewer::leave_scene_camera() {
 }
 
 void Viewer::take_view(Command command) {
+    struct AxisView {
+        Command command;
+        Vec3 forward, up;
+        char const* name;
+    };
+    // glTF's scenes look towards +Z, and up is +Y.
+    static constexpr AxisView views[] = {
+        {Command::view_front, {0, 0, -1}, {0, 1, 0}, "from the front"},
+        {Command::view_back, {0, 0, 1}, {0, 1, 0}, "from behind"},
+        {Command::view_right, {-1, 0, 0}, {0, 1, 0}, "from the right"},
+        {Command::view_left, {1, 0, 0}, {0, 1, 0}, "from the left"},
+        {Command::view_top, {0, -1, 0}, {0, 0, -1}, "from above"},
+        {Command::view_below, {0, 1, 0}, {0, 0, 1}, "from below"},
+    };
     leave_scene_camera();
     is_at_bookmark_ = false;
-    switch (command) { // glTF's scenes look towards +Z, and up is +Y
-    case Command::view_front:
-        controller_->look_along({0, 0, -1}, {0, 1, 0});
-        say("from the front");
-        break;
-    case Command::view_right:
-        controller_->look_along({-1, 0, 0}, {0, 1, 0});
-        say("from the right");
-        break;
-    case Command::view_top:
-        controller_->look_along({0, -1, 0}, {0, 0, -1});
-        say("from above");
-        break;
-    default:
+    auto const* const view = std::ranges::find(views, command, &AxisView::command);
+    if (view == std::end(views)) {
         controller_->toggle_projection();
         say(controller_->camera().projection == Projection::orthographic ? "orthographic" : "perspective");
+        return;
     }
+    controller_->look_along(view->forward, view->up);
+    controller_->fit(window_.framebuffer_size(), overlay_.covered_below());
+    say(view->name);
 }
 
 Camera Viewer::present_camera() const {

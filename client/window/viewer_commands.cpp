@@ -200,11 +200,14 @@ void Viewer::apply(Command command) {
     case Command::fit_scene:
         leave_scene_camera();
         is_at_bookmark_ = false;
-        controller_->fit(window_.framebuffer_size());
+        controller_->fit(window_.framebuffer_size(), overlay_.covered_below());
         break;
     case Command::view_front:
+    case Command::view_back:
     case Command::view_right:
+    case Command::view_left:
     case Command::view_top:
+    case Command::view_below:
     case Command::toggle_projection:
         take_view(command);
         break;

@@ -31,7 +31,9 @@ TEST_F(WindowTest, TheKeypadLooksAlongAxes) {
         std::string key;
         std::array<double, 3> axis;
     };
-    for (View const& view : {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}}) {
+    for (View const& view :
+         {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}, View{"ctrl+KP_3", {1, 0, 0}},
+          View{"ctrl+KP_7", {0, 1, 0}}, View{"ctrl+KP_1", {0, 0, 1}}}) {
         EXPECT_TRUE(eventually([&] {
             press(view.key);
             press("shift+c");

@@ -27,8 +27,11 @@ enum class Command : std::uint8_t {
     mouse_look, ///< begin it, or end it
     fit_scene,
     view_front,
+    view_back,
     view_right,
+    view_left,
     view_top,
+    view_below,
     toggle_projection,
     add_bookmark,
     remove_bookmark,

@@ -45,9 +45,12 @@ constexpr Line flying[] = {
 constexpr Line views[] = {
     by_hand("1 .. 9", "camera of the scene"),
     {Command::free_camera, "leave the camera, go on from there"},
-    {Command::view_front, "look at it from the front"},
+    {Command::view_front, "the whole scene from the front"},
+    {Command::view_back, "from behind"},
     {Command::view_right, "from the right"},
+    {Command::view_left, "from the left"},
     {Command::view_top, "from above"},
+    {Command::view_below, "from below"},
     {Command::toggle_projection, "orthographic, or perspective"},
     {Command::add_bookmark, "bookmark this view"},
     by_hand("Shift+1 .. 9", "bookmark"),

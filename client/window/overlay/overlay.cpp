@@ -31,6 +31,7 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
     if (content.time_line) {
         draw_bar(content, frame);
     }
+    covered_below_ = static_cast<int>(frame.bar_height * io.DisplayFramebufferScale.y);
     if (content.statistics && content.help.empty()) { // there is room for one of them in small windows
         draw_statistics(*content.statistics, frame);
     }
