@@ -16,8 +16,8 @@ CLI::Option* add_connection_options(CLI::App& app, ConnectionArguments& argument
         ->type_name("FILE");
     app.add_flag(
         "--tls", arguments.tls,
-        "Encrypt the connection and check the server's certificate; where no authority vouches for it, that it is "
-        "the one of the first time");
+        "Encrypt the connection and check the server's certificate; where no authority vouches for it you are asked, "
+        "and from then on it has to be the same");
     app.add_option("--tls-ca", arguments.authority_file,
                    "Certificates (PEM) to trust, none but these, as of a server that signed its own; implies --tls")
         ->type_name("FILE");

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "client/connection_arguments.h"
+#include "client/core/connection/unknown_certificate.h"
 #include "client/display_arguments.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/painter.h"
@@ -123,7 +124,10 @@ int main(int argc, char** argv) {
         } else if (!server->empty()) {
             start.address = arguments.server;
             if (!options.reconnect) {
-                first = {connect_for_window(options), options};
+                try {
+                    first = {connect_for_window(options), options};
+                } catch (UnknownCertificate const&) { // the window asks
+                }
             }
         }
         window.show();

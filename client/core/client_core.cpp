@@ -21,10 +21,6 @@ ClientCore::ClientCore(ConnectionOptions const& options, std::function<void()> o
 
 ClientCore::~ClientCore() = default;
 
-std::string const& ClientCore::notice() const {
-    return session_->connection->notice();
-}
-
 Welcome ClientCore::welcome() const {
     std::lock_guard const lock(session_->mutex);
     return session_->welcome;

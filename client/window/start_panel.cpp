@@ -21,6 +21,7 @@ void show_choice(Attempts const* attempts, SceneOpener const& opener, std::strin
                  OverlayContent& content) {
     if (attempts != nullptr) {
         content.message = attempts->message() + (complaint.empty() ? "" : "\n\n" + complaint);
+        content.asks_trust = attempts->asks_trust();
     } else if (opener.opening().empty()) {
         content.message = (complaint.empty() ? "Connect to framelet-server, or drop a scene file here." : complaint) +
                           "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Ctrl+Q: quit";
@@ -87,7 +88,8 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         opener.show(content);
         show_choice(attempts ? &*attempts : nullptr, opener, complaint, content);
         content.note = seconds_now() < note_until ? escape_note() : "";
-        if (!content.message.empty() && (!attempts || attempts->has_failed() || !is_from_command_line)) {
+        if (!content.message.empty() && !content.asks_trust &&
+            (!attempts || attempts->has_failed() || !is_from_command_line)) {
             content.address = {start.address.value_or(usual_server), start.recent, !attempts && !opener.can_reopen()};
         }
         // A field that is new takes the keys after its first frame.
@@ -100,6 +102,10 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             window.present();
             shown = content;
             --frames;
+            if (asked.trusts && attempts) {
+                *asked.trusts ? attempts->trust() : attempts.reset();
+                continue;
+            }
             if (asked.address) {
                 try_server(*asked.address);
                 continue;

@@ -31,7 +31,7 @@ Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, Sc
     settings_.bias = memory_.bias;
     adopt(std::move(connection.core));
     if (note_.empty()) {
-        say(core_->notice().empty() ? "F1: help" : core_->notice());
+        say("F1: help");
     }
     note_server();
 }
@@ -50,9 +50,6 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     bool const same_scene = core_ && core->welcome().scene_identity != 0 &&
                             core->welcome().scene_identity == core_->welcome().scene_identity;
     core_ = std::move(core);
-    if (!core_->notice().empty()) {
-        std::cerr << "framelet-viewer: " << core_->notice() << std::endl;
-    }
     lost_.clear();
     meter_ = RateMeter();
     core_->set_smoothing(lag_seconds_);
@@ -367,9 +364,12 @@ OverlayContent Viewer::overlay_content() {
          recorder_ ? with_keys(progress_text(recorder_->progress()), Command::toggle_recording) : std::string()});
     if (!lost_.empty()) {
         out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Ctrl+Q: quit";
-        out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
+        out.asks_trust = attempts_ && attempts_->asks_trust();
     } else if (picture_.rgba.empty()) {
         out.message = "waiting for the first picture ...";
+    }
+    if (!lost_.empty() && !out.asks_trust) {
+        out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
     }
     return out;
 }

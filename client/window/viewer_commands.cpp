@@ -105,6 +105,9 @@ void Viewer::apply(OverlayActions const& asked) {
     if (asked.address) {
         try_server(*asked.address);
     }
+    if (asked.trusts && attempts_) {
+        *asked.trusts ? attempts_->trust() : attempts_.reset();
+    }
     if (asked.drawn_over) {
         draw_over(*asked.drawn_over);
     }

@@ -12,6 +12,7 @@
 
 #include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
+#include "client/core/connection/unknown_certificate.h"
 #include "client/core/picture/display_timing.h"
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
@@ -210,6 +211,31 @@ void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file)
     write_png(file, contact_sheet(sheet.pairs()));
 }
 
+/// True where somebody at the terminal says that a certificate is to be trusted; false where nobody can be asked.
+bool asks_whether_to_trust(UnknownCertificate const& unknown) {
+    if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1) {
+        return false;
+    }
+    std::cerr << "No authority vouches for the certificate of " << unknown.server << ", which is new here.\n"
+              << "Its SHA-256 fingerprint is " << unknown.fingerprint << "\n"
+              << "Is that what the server printed, and is it to be trusted from now on (yes/no)? " << std::flush;
+    std::string answer;
+    return std::getline(std::cin, answer) && answer == "yes";
+}
+
+/// Opens the session. Throws as ClientCore does.
+std::unique_ptr<ClientCore> connect(ConnectionOptions const& connection) {
+    try {
+        return std::make_unique<ClientCore>(connection);
+    } catch (UnknownCertificate const& unknown) {
+        if (!asks_whether_to_trust(unknown)) {
+            throw;
+        }
+        unknown.trust();
+    }
+    return std::make_unique<ClientCore>(connection);
+}
+
 struct Session {
     ClientStatistics statistics;
     RunFigures figures;
@@ -229,10 +255,8 @@ Session look(WindowlessOptions const& options, ConnectionOptions const& connecti
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
     }
-    ClientCore core(connection);
-    if (!core.notice().empty()) {
-        std::cerr << "framelet-client: " << core.notice() << std::endl;
-    }
+    std::unique_ptr<ClientCore> const connected = connect(connection);
+    ClientCore& core = *connected;
     std::size_t const cameras = core.welcome().cameras.size();
     if (path && path->scene_camera >= static_cast<int>(cameras)) {
         throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +

@@ -48,7 +48,7 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
         draw_text("note", {0.5f, 1}, content.note, frame);
     }
     if (!content.message.empty()) {
-        draw_message(content.message, content.address ? &*content.address : nullptr, address_, frame);
+        draw_message(content, address_, frame);
     }
     has_menu_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     if (has_menu_) { // a click beside it closes it, and does no more

@@ -76,6 +76,7 @@ struct OverlayContent {
     std::optional<float> progress; ///< a bar below it, [0, 1]
     std::string note; ///< at the lower edge; empty: none
     std::string message; ///< in the middle; empty: none
+    bool asks_trust = false; ///< the message is a question, with two answers below
     std::optional<AddressField> address; ///< below the message
     std::optional<TimeLine> time_line; ///< along the lower edge
     CameraMenu cameras; ///< in that bar
@@ -104,6 +105,7 @@ struct OverlayActions {
     };
     std::optional<Renamed> renamed;
     std::optional<std::string> address; ///< to connect to
+    std::optional<bool> trusts; ///< the answer to the message
 };
 
 } // namespace framelet

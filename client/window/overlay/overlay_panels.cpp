@@ -255,12 +255,24 @@ void draw_text(char const* name, ImVec2 anchor, std::string const& text, Overlay
     ImGui::End();
 }
 
-void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame) {
+void draw_message(OverlayContent const& content, std::string& typed, OverlayFrame& frame) {
+    AddressField const* const field = content.address ? &*content.address : nullptr;
     if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame,
-                    field != nullptr ? PanelKind::takes_mouse : PanelKind::told)) {
+                    field != nullptr || content.asks_trust ? PanelKind::takes_mouse : PanelKind::told)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
-        ImGui::TextUnformatted(text.c_str());
+        ImGui::TextUnformatted(content.message.c_str());
         ImGui::PopTextWrapPos();
+        if (content.asks_trust) {
+            ImGui::Separator();
+            if (ImGui::Button("do not connect")) {
+                frame.actions.trusts = false;
+            }
+            ImGui::SameLine();
+            if (ImGui::Button("trust it from now on")) {
+                frame.actions.trusts = true;
+            }
+            take_area(frame);
+        }
         if (field != nullptr) {
             ImGui::Separator();
             std::array<char, 300> buffer{};

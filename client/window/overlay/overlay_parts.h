@@ -50,7 +50,8 @@ void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame);
 /// what takes the left one, as far as there is room.
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
                std::optional<float> progress = {});
-/// Draws a message and, where there is a field, that below it. `typed` is the field's text, kept by the caller.
-void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame);
+/// Draws the message and, where there are any, the answers to it or the field below it. `typed` is the field's text,
+/// kept by the caller.
+void draw_message(OverlayContent const& content, std::string& typed, OverlayFrame& frame);
 
 } // namespace framelet
