@@ -18,6 +18,7 @@
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
+#include "protocol/stream/token.h"
 
 namespace {
 
@@ -93,11 +94,11 @@ int main(int argc, char** argv) {
 
     Viewport viewport;
     // A token belongs to one server: it is looked for anew for each that is named.
-    OptionsFor const options_for = [&arguments](std::string const& address) {
+    OptionsFor const options_for = [&arguments](NamedServer const& server) {
         ConnectionArguments named = arguments;
-        named.server = address;
+        named.server = server.address;
         ConnectionOptions options = make_connection_options(named);
-        options.token = read_token(named);
+        options.token = server.token.empty() ? read_token(named) : token_in(server.token, "the token");
         return options;
     };
     try {
@@ -110,14 +111,14 @@ int main(int argc, char** argv) {
         return exit_usage(app, error.what());
     }
     try {
-        ConnectionOptions const options = options_for(arguments.server);
+        ConnectionOptions const options = options_for({arguments.server});
         ViewerMemory memory = read_viewer_memory();
         if (sized->empty()) {
             viewport = memory.size.value_or(viewport);
         }
         Window window("framelet-viewer", viewport);
         SceneOpener opener(connect_for_window, Window::wake, server_options);
-        Start start{{}, needs_scene, memory.servers};
+        Start start{{}, needs_scene, memory.servers, options.tls};
         Connection first;
         if (!scenes.empty()) {
             opener.open_first(scenes, options);

@@ -23,8 +23,10 @@ void show_choice(Attempts const* attempts, SceneOpener const& opener, std::strin
         content.message = attempts->message() + (complaint.empty() ? "" : "\n\n" + complaint);
         content.asks_trust = attempts->asks_trust();
     } else if (opener.opening().empty()) {
-        content.message = (complaint.empty() ? "Connect to framelet-server, or drop a scene file here." : complaint) +
-                          "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Ctrl+Q: quit";
+        content.message =
+            (complaint.empty() ? "Connect to framelet-server, or open a scene file, which may also be dropped here."
+                               : complaint) +
+            "\n\n" + (opener.can_reopen() ? "R: try again     " : "") + "Enter: connect     Ctrl+Q: quit";
     }
 }
 
@@ -38,15 +40,15 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
     Overlay overlay(window.handle());
     std::optional<Attempts> attempts;
     if (start.address) {
-        attempts.emplace(options_for(*start.address));
+        attempts.emplace(options_for({*start.address}));
     }
     bool is_from_command_line = start.address.has_value();
     std::string complaint;
     OverlayContent shown;
     int frames = 1; // still to be drawn; what the mouse presses is seen in one, what it releases in the next
-    auto const try_server = [&](std::string const& address) {
+    auto const try_server = [&](NamedServer const& server) {
         try {
-            attempts.emplace(options_for(address));
+            attempts.emplace(options_for(server));
             is_from_command_line = false;
             complaint.clear();
         } catch (InputError const& error) {
@@ -90,7 +92,8 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         content.note = seconds_now() < note_until ? escape_note() : "";
         if (!content.message.empty() && !content.asks_trust &&
             (!attempts || attempts->has_failed() || !is_from_command_line)) {
-            content.address = {start.address.value_or(usual_server), start.recent, !attempts && !opener.can_reopen()};
+            content.address = {with_tls(start.address.value_or(usual_server), start.always_tls), start.recent,
+                               !attempts && !opener.can_reopen(), start.always_tls};
         }
         // A field that is new takes the keys after its first frame.
         frames = content != shown ? std::max(frames, 3) : frames;
@@ -106,13 +109,16 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
                 *asked.trusts ? attempts->trust() : attempts.reset();
                 continue;
             }
-            if (asked.address) {
-                try_server(*asked.address);
+            if (asked.server) {
+                try_server(*asked.server);
                 continue;
             }
-            for (Command const command : asked.commands) { // Esc in the field
+            for (Command const command : asked.commands) { // Esc in a field, or a button
                 if (is_quit(command)) {
                     return {};
+                }
+                if (command == Command::open_file) {
+                    opener.choose();
                 }
             }
         }
@@ -130,6 +136,8 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             }
             if (command == Command::toggle_fullscreen) {
                 window.toggle_fullscreen();
+            } else if (command == Command::open_file) {
+                opener.choose();
             } else if (command != Command::reset && command != Command::reconnect) {
                 continue;
             } else if (attempts) {
@@ -137,7 +145,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             } else if (!opener.opening().empty()) {
                 continue;
             } else if (command == Command::reconnect) {
-                try_server(overlay.address());
+                try_server(overlay.server());
             } else if (opener.can_reopen()) {
                 complaint.clear();
                 opener.reopen();

@@ -38,7 +38,7 @@ Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, Sc
 
 void Viewer::note_server() {
     if (!opener_.has_open()) { // a private server will not be there next time
-        memory_.note_server(connection_.server.text());
+        memory_.note_server(connection_.server_name());
     }
 }
 
@@ -243,9 +243,9 @@ void Viewer::say(std::string note, double seconds) {
 }
 
 /// Begins to connect to a server that the user has named.
-void Viewer::try_server(std::string const& address) {
+void Viewer::try_server(NamedServer const& server) {
     try {
-        attempts_.emplace(options_for_(address));
+        attempts_.emplace(options_for_(server));
         opener_.give_up(); // the newest wish counts
     } catch (InputError const& error) {
         say(error.what(), long_note_seconds);
@@ -369,7 +369,7 @@ OverlayContent Viewer::overlay_content() {
         out.message = "waiting for the first picture ...";
     }
     if (!lost_.empty() && !out.asks_trust) {
-        out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
+        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers};
     }
     return out;
 }

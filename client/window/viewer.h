@@ -45,7 +45,7 @@ private:
 
     void adopt(std::unique_ptr<ClientCore> core);
     void note_server();
-    void try_server(std::string const& address);
+    void try_server(NamedServer const& server);
     void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
     void apply(OverlayActions const& asked);

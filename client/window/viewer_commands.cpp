@@ -102,8 +102,8 @@ void Viewer::apply(OverlayActions const& asked) {
     if (asked.removed_bookmark) {
         remove_bookmark(*asked.removed_bookmark);
     }
-    if (asked.address) {
-        try_server(*asked.address);
+    if (asked.server) {
+        try_server(*asked.server);
     }
     if (asked.trusts && attempts_) {
         *asked.trusts ? attempts_->trust() : attempts_.reset();
@@ -161,6 +161,9 @@ void Viewer::apply(Command command) {
             is_at_bookmark_ = false;
             controller_->reset();
         }
+        break;
+    case Command::open_file:
+        opener_.choose();
         break;
     case Command::play_or_pause:
         clock.playing = !clock.playing;

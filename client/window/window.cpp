@@ -125,7 +125,7 @@ struct Window::Impl {
         auto const command =
             command_of_key(with.control ? labelled_key(code, scancode) : code, with, action == GLFW_REPEAT);
         input.touched_overlay = input.touched_overlay || is_typing;
-        if (command && (!is_typing || command == Command::quit)) {
+        if (command && (!is_typing || command == Command::quit || command == Command::open_file)) {
             input.commands.push_back(*command);
         }
     }

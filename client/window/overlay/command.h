@@ -11,6 +11,7 @@ enum class Command : std::uint8_t {
     escape, ///< as `EscapeKey`
     reset,
     reconnect,
+    open_file,
     play_or_pause,
     step_forward,
     step_back,

@@ -68,7 +68,8 @@ constexpr Line picture[] = {
     {Command::screenshot_with_depth, "screenshot as EXR, with depth"},
 };
 constexpr Line window[] = {
-    by_hand("dropping a scene file", "opens it here, served by this machine"),
+    {Command::open_file, "open a scene file, served by this machine"},
+    by_hand("dropping a scene file", "opens it likewise"),
     {Command::toggle_fullscreen, "full screen"},
     {Command::toggle_time_line, "the bar at the lower edge, or not"},
     {Command::toggle_statistics, "statistics"},

@@ -21,6 +21,7 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_R, alone, Command::reset, false},
     KeyMeaning{GLFW_KEY_ENTER, alone, Command::reconnect, false},
     KeyMeaning{GLFW_KEY_KP_ENTER, alone, Command::reconnect, false},
+    KeyMeaning{GLFW_KEY_O, control, Command::open_file, false},
     KeyMeaning{GLFW_KEY_SPACE, alone, Command::play_or_pause, false},
     KeyMeaning{GLFW_KEY_PERIOD, alone, Command::step_forward, true},
     KeyMeaning{GLFW_KEY_COMMA, alone, Command::step_back, true},

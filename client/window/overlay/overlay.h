@@ -30,8 +30,8 @@ public:
     int covered_below() const { return covered_below_; }
     /// True while letters go into a text, and are no commands.
     bool is_typed_into() const;
-    /// The text in the field for a server.
-    std::string const& address() const { return address_; }
+    /// The server that stands in the fields.
+    NamedServer const& server() const { return server_; }
     bool has_menu() const { return has_menu_; }
     /// Closes a menu that is open with the next `draw`.
     void close_menu() { closes_menu_ = true; }
@@ -47,7 +47,7 @@ private:
     bool has_menu_ = false;
     bool closes_menu_ = false;
     NameEdit edit_;
-    std::string address_; ///< as typed
+    NamedServer server_; ///< as typed
     bool has_address_ = false; ///< its field is shown, and has been filled in
 };
 

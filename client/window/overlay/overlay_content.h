@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/core/drawn_over/drawn_over.h"
+#include "client/window/named_server.h"
 #include "client/window/overlay/command.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/time_line.h"
@@ -60,11 +61,12 @@ struct NameEdit {
     std::string text{};
 };
 
-/// A field in which a server may be named.
+/// Fields in which a server may be named, and its token.
 struct AddressField {
     std::string proposed;
     std::vector<std::string> recent;
     bool takes_keys = false; ///< from the first, without a click into it
+    bool always_tls = false; ///< whatever the address says
     bool operator==(AddressField const&) const = default;
 };
 
@@ -104,7 +106,7 @@ struct OverlayActions {
         std::string name;
     };
     std::optional<Renamed> renamed;
-    std::optional<std::string> address; ///< to connect to
+    std::optional<NamedServer> server; ///< to connect to
     std::optional<bool> trusts; ///< the answer to the message
 };
 

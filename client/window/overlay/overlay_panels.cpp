@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "client/core/connection/server_address.h"
 #include "client/core/drawn_over/age_colors.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/overlay/overlay_text.h"
@@ -114,6 +115,66 @@ bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame co
                         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                             ImGuiWindowFlags_NoFocusOnAppearing | inputs | bars);
+}
+
+/// A field beside its name; true when it was ended by Enter.
+bool text_field(char const* name, std::string& text, ImGuiInputTextFlags flags, OverlayFrame& frame) {
+    std::array<char, 300> buffer{};
+    std::copy_n(text.begin(), std::min(text.size(), buffer.size() - 1), buffer.begin());
+    ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
+    bool const entered =
+        ImGui::InputText(name, buffer.data(), buffer.size(),
+                         flags | ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    // Esc gives back what was there; where nothing was typed it is as elsewhere.
+    if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
+        text == buffer.data()) {
+        frame.actions.commands.push_back(Command::escape);
+    }
+    text = buffer.data();
+    return entered;
+}
+
+void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFrame& frame) {
+    float const begin = ImGui::GetCursorPosX() + ImGui::CalcTextSize("server: ").x;
+    auto const label = [begin](char const* text) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        ImGui::SameLine(begin);
+    };
+    ImGui::Separator();
+    label("server:");
+    if (field.takes_keys && ImGui::IsWindowAppearing()) {
+        ImGui::SetKeyboardFocusHere();
+    }
+    bool entered = text_field("##address", typed.address, 0, frame);
+    tooltip("HOST or HOST:PORT, where framelet-server listens");
+    ImGui::SameLine();
+    bool tls = field.always_tls || asks_for_tls(typed.address);
+    ImGui::BeginDisabled(field.always_tls);
+    if (ImGui::Checkbox("TLS", &tls)) {
+        typed.address = with_tls(typed.address, tls);
+    }
+    ImGui::EndDisabled();
+    tooltip(field.always_tls ? "the command line says so"
+                             : "encrypt the connection, as servers beyond this machine ask");
+    label("token:");
+    entered = text_field("##token", typed.token, ImGuiInputTextFlags_Password, frame) || entered;
+    tooltip(
+        "what the server's --token-file has. Empty: as on the command line, and none on the same machine as the same "
+        "user. It is not kept");
+    ImGui::SameLine();
+    if ((ImGui::Button("connect") || entered) && !typed.address.empty()) {
+        frame.actions.server = typed;
+    }
+    for (std::string const& address : field.recent) {
+        if (ImGui::SmallButton(address.c_str())) {
+            frame.actions.server = {address, typed.token};
+        }
+        tooltip("connect to it as before");
+    }
+    ImGui::Separator();
+    button("open a scene file ...", Command::open_file, frame);
+    ImGui::NewLine();
 }
 
 } // namespace
@@ -255,7 +316,7 @@ void draw_text(char const* name, ImVec2 anchor, std::string const& text, Overlay
     ImGui::End();
 }
 
-void draw_message(OverlayContent const& content, std::string& typed, OverlayFrame& frame) {
+void draw_message(OverlayContent const& content, NamedServer& typed, OverlayFrame& frame) {
     AddressField const* const field = content.address ? &*content.address : nullptr;
     if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame,
                     field != nullptr || content.asks_trust ? PanelKind::takes_mouse : PanelKind::told)) {
@@ -274,35 +335,7 @@ void draw_message(OverlayContent const& content, std::string& typed, OverlayFram
             take_area(frame);
         }
         if (field != nullptr) {
-            ImGui::Separator();
-            std::array<char, 300> buffer{};
-            std::copy_n(typed.begin(), std::min(typed.size(), buffer.size() - 1), buffer.begin());
-            ImGui::TextUnformatted("server:");
-            ImGui::SameLine();
-            ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
-            if (field->takes_keys && ImGui::IsWindowAppearing()) {
-                ImGui::SetKeyboardFocusHere();
-            }
-            bool const entered =
-                ImGui::InputText("##address", buffer.data(), buffer.size(),
-                                 ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-            // Esc gives back what was there; where nothing was typed it is as elsewhere.
-            if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
-                typed == buffer.data()) {
-                frame.actions.commands.push_back(Command::escape);
-            }
-            typed = buffer.data();
-            tooltip("HOST or HOST:PORT, where framelet-server listens");
-            ImGui::SameLine();
-            if ((ImGui::Button("connect") || entered) && !typed.empty()) {
-                frame.actions.address = typed;
-            }
-            for (std::string const& address : field->recent) {
-                if (ImGui::SmallButton(address.c_str())) {
-                    frame.actions.address = address;
-                }
-                tooltip("connect to it as before");
-            }
+            draw_server_fields(*field, typed, frame);
             take_area(frame);
         }
     }

@@ -50,8 +50,8 @@ void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame);
 /// what takes the left one, as far as there is room.
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
                std::optional<float> progress = {});
-/// Draws the message and, where there are any, the answers to it or the field below it. `typed` is the field's text,
+/// Draws the message and, where there are any, the answers to it or the fields below it. `typed` is their text,
 /// kept by the caller.
-void draw_message(OverlayContent const& content, std::string& typed, OverlayFrame& frame);
+void draw_message(OverlayContent const& content, NamedServer& typed, OverlayFrame& frame);
 
 } // namespace framelet
