@@ -1,9 +1,11 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "client/connection_arguments.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/connection/unknown_certificate.h"
 #include "client/display_arguments.h"
 #include "client/gpu/canvas_choice.h"
@@ -52,6 +54,7 @@ int main(int argc, char** argv) {
     ConnectionArguments arguments;
     arguments.server = usual_server;
     std::string size = "1280x720";
+    std::string camera_file;
     bool fullscreen = false;
     std::string painter = "auto";
     DisplayChoice display;
@@ -70,6 +73,10 @@ int main(int argc, char** argv) {
         ->type_name("SCENE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--camera", camera_file,
+                   "Camera file (JSON) to begin with, as C in the window copies it; of a flight its beginning")
+        ->type_name("FILE")
+        ->default_str("the scene's own view");
     CLI::Option const* const sized =
         app.add_option("--size", size, "Size of the window in pixels; without it as it was last time")
             ->type_name("WIDTHxHEIGHT")
@@ -111,6 +118,13 @@ int main(int argc, char** argv) {
         return exit_usage(app, error.what());
     }
     try {
+        std::optional<CameraPath> camera;
+        if (!camera_file.empty()) {
+            camera = read_camera_path(camera_file);
+            if (display.exposure_ev) {
+                camera->moment.exposure_ev.reset();
+            }
+        }
         ConnectionOptions const options = options_for({arguments.server});
         ViewerMemory memory = read_viewer_memory();
         if (sized->empty()) {
@@ -147,7 +161,7 @@ int main(int argc, char** argv) {
             std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
         }
         int const result =
-            Viewer(window, std::move(first), options_for, opener, display, memory, std::move(choice)).run();
+            Viewer(window, std::move(first), options_for, opener, display, camera, memory, std::move(choice)).run();
         remember(window, memory);
         return result;
     } catch (std::exception const& error) {

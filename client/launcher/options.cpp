@@ -74,6 +74,7 @@ std::variant<ViewerArguments, int> parse_options(int argc, char const* const* ar
     view->option_defaults()->group(window_group);
     option("--size", "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->check(readable_by(parse_size));
     flag("--fullscreen", "Fill the screen");
+    option("--camera", "Camera file (JSON) to begin with")->type_name("FILE");
     option("--painter", "What paints: the graphics card (gpu), the processor (cpu), or whichever is better (auto)")
         ->type_name("auto|cpu|gpu")
         ->check(readable_by(parse_painter));

@@ -6,6 +6,7 @@
 
 #include "client/processes/end_signals.h"
 #include "client/window/attempts.h"
+#include "client/window/dropped_files.h"
 #include "client/window/escape_key.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/overlay.h"
@@ -126,8 +127,11 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         constexpr double look_seconds = 0.1;
         WindowInput const input = window.wait(frames > 0 && !window.is_hidden() ? 0 : look_seconds);
         if (!input.dropped.empty()) {
-            complaint.clear();
-            opener.open(input.dropped);
+            DroppedFiles const dropped = sort_dropped(input.dropped);
+            complaint = dropped.cameras.empty()
+                            ? ""
+                            : "'" + dropped.cameras.back() + "' is a camera: drop it once there is a scene to look at.";
+            opener.open(dropped.scenes);
         }
         frames = input.touched_overlay ? 3 : input.redraw ? std::max(frames, 1) : frames;
         for (Command const command : input.commands) {

@@ -22,7 +22,8 @@ constexpr double idle_seconds = 0.25;
 } // namespace
 
 Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-               DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter)
+               DisplayChoice const& choice, std::optional<CameraPath> const& camera, ViewerMemory& memory,
+               CanvasChoice painter)
     : window_(window), connection_(std::move(connection.options)), options_for_(std::move(options_for)),
       opener_(opener), memory_(memory), overlay_(window.handle()), chosen_exposure_(choice.exposure_ev),
       settings_(choice.settings()), lag_seconds_(choice.lag_seconds.value_or(memory.lag_seconds)),
@@ -32,6 +33,9 @@ Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, Sc
     adopt(std::move(connection.core));
     if (note_.empty()) {
         say("F1: help");
+    }
+    if (camera) {
+        take_camera(*camera);
     }
     note_server();
 }
@@ -119,7 +123,7 @@ int Viewer::run() {
         redraw = redraw || input.redraw;
         // A press of the mouse is seen in one frame, its release in the next, and what came of it in a third.
         overlay_frames = input.touched_overlay ? 3 : overlay_frames;
-        opener_.open(input.dropped);
+        take_dropped(input.dropped);
         watch_opener();
         watch_connection();
         watch_recording();
@@ -330,7 +334,6 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
     };
     out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
                                      : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);
-    out.files_lack = camera_file_lacks(present_camera());
     return out;
 }
 

@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/core/camera/camera_controller.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
 #include "client/core/picture/making_time.h"
 #include "client/display_choice.h"
@@ -29,10 +31,11 @@ namespace framelet {
 class Viewer {
 public:
     /// `connection` wakes the window on news; `options_for` is for servers that the user names. What `choice` does not
-    /// say is as it is remembered. Scenes that are dropped are opened by `opener`, what is to be remembered goes into
-    /// `memory`; both must outlive this. `painter` is of the window's context.
+    /// say is as it is remembered. `camera`: to begin with. Scenes that are dropped are opened by `opener`, what is to
+    /// be remembered goes into `memory`; both must outlive this. `painter` is of the window's context.
     Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-           DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter);
+           DisplayChoice const& choice, std::optional<CameraPath> const& camera, ViewerMemory& memory,
+           CanvasChoice painter);
 
     /// Runs until the user quits, or a signal tells the program to end. Returns the exit code: 1 where the user quit
     /// and the server was gone.
@@ -71,6 +74,9 @@ private:
     void remove_bookmark(int number);
     void go_to_bookmark(int number);
     void copy_camera(bool saves);
+    void take_camera(CameraPath const& path);
+    void take_dropped(std::vector<std::string> const& files);
+    void paste_camera();
     void say(std::string note, double seconds = note_seconds);
     void watch_connection();
     void watch_opener();

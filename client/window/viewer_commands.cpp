@@ -265,6 +265,9 @@ void Viewer::apply(Command command) {
     case Command::copy_camera:
         copy_camera(false);
         break;
+    case Command::paste_camera:
+        paste_camera();
+        break;
     case Command::save_camera:
         copy_camera(true);
         break;

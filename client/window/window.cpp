@@ -424,6 +424,11 @@ void Window::set_clipboard(std::string const& text) {
     glfwSetClipboardString(impl_->window, text.c_str());
 }
 
+std::string Window::clipboard() const {
+    char const* const text = glfwGetClipboardString(impl_->window);
+    return text == nullptr ? "" : text;
+}
+
 bool Window::is_fullscreen() const {
     return glfwGetWindowMonitor(impl_->window) != nullptr;
 }

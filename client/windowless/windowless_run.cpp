@@ -45,8 +45,9 @@ std::optional<CameraPath> read_camera(WindowlessOptions const& options) {
     return options.camera_file.empty() ? std::nullopt : std::optional(read_camera_path(options.camera_file));
 }
 
-void ask_clock(ClientCore& core, WindowlessOptions const& options) {
-    ClockRequest request;
+/// Sets the clock as the camera file says, and as the options say, which go before it.
+void ask_clock(ClientCore& core, WindowlessOptions const& options, std::optional<CameraPath> const& path) {
+    ClockRequest request = path ? path->moment.clock_request() : ClockRequest();
     if (options.play || options.pause) {
         request.set |= ClockRequest::playing;
         request.state.playing = options.play;
@@ -56,7 +57,9 @@ void ask_clock(ClientCore& core, WindowlessOptions const& options) {
         request.state.time = *options.seek;
     }
     if (request.set != 0 && !core.controls()) {
-        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause and --seek do nothing"
+        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause, --seek and what the "
+                     "camera file "
+                     "says of it do nothing"
                   << std::endl;
     }
     if (request.set != 0) {
@@ -262,10 +265,14 @@ Session look(WindowlessOptions const& options, ConnectionOptions const& connecti
         throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +
                          " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
     }
-    core.set_settings(options.display.settings());
+    ViewerSettings settings = options.display.settings();
+    if (path && !options.display.exposure_ev) {
+        settings.exposure_ev = path->moment.exposure_ev.value_or(settings.exposure_ev);
+    }
+    core.set_settings(settings);
     core.set_smoothing(options.display.lag_seconds.value_or(0));
     core.set_drawn_over(options.display.drawn_over);
-    ask_clock(core, options);
+    ask_clock(core, options, path);
     Session session;
     session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr, sheet ? &*sheet : nullptr);
     session.statistics = core.statistics();

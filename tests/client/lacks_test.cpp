@@ -28,10 +28,6 @@ TEST(Lacks, WhatIsThereIsNotLacking) {
     EXPECT_NE(confidence_lacks(false).find("F4"), std::string::npos);
     EXPECT_EQ(picture_lacks(true), "");
     EXPECT_NE(picture_lacks(false), "");
-    Camera camera;
-    EXPECT_EQ(camera_file_lacks(camera), "");
-    camera.projection = Projection::orthographic;
-    EXPECT_NE(camera_file_lacks(camera), "");
 }
 
 TEST(Lacks, TheHelpSaysWhyTheClocksKeysDoNothing) {

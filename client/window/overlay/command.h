@@ -37,6 +37,7 @@ enum class Command : std::uint8_t {
     add_bookmark,
     remove_bookmark,
     copy_camera,
+    paste_camera,
     save_camera,
     toggle_fullscreen,
     toggle_help,

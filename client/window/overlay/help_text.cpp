@@ -55,8 +55,9 @@ constexpr Line views[] = {
     {Command::add_bookmark, "bookmark this view"},
     by_hand("Shift+1 .. 9", "bookmark"),
     {Command::remove_bookmark, "remove the bookmark gone to last"},
-    {Command::copy_camera, "copy this view as a camera file"},
-    {Command::save_camera, "save it as one in the current folder"},
+    {Command::copy_camera, "copy this view, its moment and exposure"},
+    {Command::paste_camera, "go to the view that was copied"},
+    {Command::save_camera, "save it as a camera file, which may be dropped here"},
 };
 constexpr Line picture[] = {
     {Command::brighter, "brighter by 1/4 EV"},

@@ -32,10 +32,6 @@ std::string confidence_lacks(bool moves_samples) {
     return moves_samples ? "" : samples_stay() + ": ages say the same";
 }
 
-std::string camera_file_lacks(Camera const& camera) {
-    return camera.projection == Projection::orthographic ? "a camera file cannot hold an orthographic camera" : "";
-}
-
 std::string picture_lacks(bool has_picture) {
     return has_picture ? "" : "there is no picture yet";
 }

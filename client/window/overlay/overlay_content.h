@@ -44,7 +44,6 @@ struct CameraMenu {
     std::string current;
     std::vector<std::string> scene_cameras; ///< names, for people
     std::vector<std::string> bookmarks; ///< their names
-    std::string files_lack{}; ///< why there is no camera file of what one looks through; empty: there may be
     bool operator==(CameraMenu const&) const = default;
 };
 
