@@ -101,11 +101,11 @@ int main(int argc, char** argv) {
 
     Viewport viewport;
     // A token belongs to one server: it is looked for anew for each that is named.
-    OptionsFor const options_for = [&arguments](NamedServer const& server) {
-        ConnectionArguments named = arguments;
-        named.server = server.address;
-        ConnectionOptions options = make_connection_options(named);
-        options.token = server.token.empty() ? read_token(named) : token_in(server.token, "the token");
+    OptionsFor const options_for = [&arguments](NamedServer const& named) {
+        ConnectionArguments filled = arguments;
+        filled.server = named.address;
+        ConnectionOptions options = make_connection_options(filled);
+        options.token = named.token.empty() ? read_token(filled) : token_in(named.token, "the token");
         return options;
     };
     try {

@@ -81,6 +81,19 @@ TEST(View, ACommandLineOfNoUseIsOneLineAndAnExitCode) {
     expect_line(programs.framelet(), {{"view", scene_file}, 1, "framelet: cannot find framelet-viewer"});
 }
 
+TEST(View, OfAFolderListsTheScenesInItAndBelow) {
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder.path() / "below");
+    std::string const below = folder.write("below/car.glb", "");
+    std::string const here = folder.write("my house.obj", "");
+    Process list(FRAMELET_LAUNCHER, {"view", folder.path().string()});
+    EXPECT_EQ(list.wait(patience), 0) << list.errors();
+    EXPECT_EQ(list.output(), "framelet view " + below + "\nframelet view '" + here + "'\n");
+    EXPECT_EQ(list.errors(), "");
+    TemporaryFolder const empty;
+    expect_line(FRAMELET_LAUNCHER, {{"view", empty.path().string()}, 1, "no scene file"});
+}
+
 TEST(View, SaysThatThereIsNoDisplay) {
     ::unsetenv("DISPLAY");
     ::unsetenv("WAYLAND_DISPLAY");
