@@ -132,7 +132,7 @@ int main(int argc, char** argv) {
         }
         Window window("framelet-viewer", viewport);
         SceneOpener opener(connect_for_window, Window::wake, server_options);
-        Start start{{}, needs_scene, memory.servers, options.tls};
+        Start start{{}, needs_scene, memory.servers, arguments.tls || !arguments.authority_file.empty()};
         Connection first;
         if (!scenes.empty()) {
             opener.open_first(scenes, options);
