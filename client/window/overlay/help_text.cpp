@@ -1,5 +1,6 @@
 #include "client/window/overlay/help_text.h"
 
+#include <algorithm>
 #include <span>
 
 #include "client/window/overlay/key_table.h"
@@ -43,8 +44,6 @@ constexpr Line flying[] = {
     by_hand("gamepad", "sticks: fly, look; triggers: down, up"),
 };
 constexpr Line views[] = {
-    by_hand("1 .. 9", "camera of the scene"),
-    {Command::free_camera, "leave the camera, go on from there"},
     {Command::view_front, "the whole scene from the front"},
     {Command::view_back, "from behind"},
     {Command::view_right, "from the right"},
@@ -52,6 +51,10 @@ constexpr Line views[] = {
     {Command::view_top, "from above"},
     {Command::view_below, "from below"},
     {Command::toggle_projection, "orthographic, or perspective"},
+};
+constexpr Line cameras[] = {
+    by_hand("1 .. 9", "camera of the scene"),
+    {Command::free_camera, "leave the camera, go on from there"},
     {Command::add_bookmark, "bookmark this view"},
     by_hand("Shift+1 .. 9", "bookmark"),
     {Command::remove_bookmark, "remove the bookmark gone to last"},
@@ -83,8 +86,8 @@ struct Group {
     char const* title;
     std::span<Line const> lines;
 };
-constexpr Group groups[] = {{"To begin with", first}, {"Time", clock},      {"Flying", flying},
-                            {"Views", views},         {"Picture", picture}, {"Window", window}};
+constexpr Group groups[] = {{"To begin with", first}, {"Time", clock},      {"Flying", flying}, {"Views", views},
+                            {"Cameras", cameras},     {"Picture", picture}, {"Window", window}};
 
 std::string keys_of(Line const& line) {
     return line.hands != nullptr ? line.hands : key_names(line.command);
@@ -116,15 +119,20 @@ std::vector<HelpGroup> help_groups(std::string const& clock_lacks) {
 }
 
 std::size_t left_groups(std::span<HelpGroup const> groups) {
-    std::size_t lines = 0;
+    std::size_t right = 0;
     for (HelpGroup const& group : groups) {
-        lines += group.rows.size() + 1;
+        right += group.rows.size() + 1;
     }
-    std::size_t left = 0;
-    for (std::size_t above = 0; 2 * above < lines; ++left) {
-        above += groups[left].rows.size() + 1;
+    std::size_t out = 0, left = 0, least = right;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+        left += groups[i].rows.size() + 1;
+        right -= groups[i].rows.size() + 1;
+        if (std::max(left, right) <= least) {
+            least = std::max(left, right);
+            out = i + 1;
+        }
     }
-    return left;
+    return out;
 }
 
 std::string help_text(Command command) {

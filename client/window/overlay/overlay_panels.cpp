@@ -91,10 +91,11 @@ void help_column(std::span<HelpGroup const> groups, float name_width, float text
     ImGui::EndGroup();
 }
 
-/// The use of the mouse on a panel.
+/// The use of mouse and keyboard on a panel.
 enum class PanelKind {
     told, ///< none
     takes_mouse,
+    takes_keys, ///< Tab goes through its fields, too
     scrolls, ///< its wheel scrolls, where there is more of it than room
 };
 
@@ -108,8 +109,10 @@ bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame co
                        margin + anchor.y * (size.y - frame.bar_height - 2 * margin));
     ImGui::SetNextWindowPos(place, ImGuiCond_Always, anchor);
     ImGui::SetNextWindowBgAlpha(opacity);
-    ImGuiWindowFlags const inputs =
-        kind == PanelKind::told ? ImGuiWindowFlags_NoInputs : ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+    ImGuiWindowFlags const inputs = kind == PanelKind::told ? ImGuiWindowFlags_NoInputs
+                                    : kind == PanelKind::takes_keys
+                                        ? ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNavFocus
+                                        : ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
     ImGuiWindowFlags const bars = kind == PanelKind::scrolls ? 0 : ImGuiWindowFlags_NoScrollbar;
     return ImGui::Begin(name, nullptr,
                         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
@@ -319,7 +322,7 @@ void draw_text(char const* name, ImVec2 anchor, std::string const& text, Overlay
 void draw_message(OverlayContent const& content, NamedServer& typed, OverlayFrame& frame) {
     AddressField const* const field = content.address ? &*content.address : nullptr;
     if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame,
-                    field != nullptr || content.asks_trust ? PanelKind::takes_mouse : PanelKind::told)) {
+                    field != nullptr || content.asks_trust ? PanelKind::takes_keys : PanelKind::told)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
         ImGui::TextUnformatted(content.message.c_str());
         ImGui::PopTextWrapPos();
