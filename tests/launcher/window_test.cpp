@@ -109,6 +109,36 @@ TEST_F(WindowTest, EscapeLeavesTheFullScreenAndAsksOnceWhetherToQuit) {
     EXPECT_FALSE(nlohmann::json::parse(memory()).at("fullscreen").get<bool>());
 }
 
+TEST_F(WindowTest, GoesToTheViewThatWasCopiedAndToThatOfTheCommandLine) {
+    auto const is_at = [](nlohmann::json const& camera, nlohmann::json const& wanted) {
+        for (char const* const part : {"position", "target"}) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (std::abs(camera[part][i].get<double>() - wanted[part][i].get<double>()) > 1e-3) {
+                    return false;
+                }
+            }
+        }
+        return camera["exposure"] == wanted["exposure"] && camera["scene_time"] == wanted["scene_time"];
+    };
+    nlohmann::json const copied = newest_camera();
+    EXPECT_TRUE(copied.at("paused").get<bool>());
+    press("c");
+    EXPECT_TRUE(eventually([&] {
+        press("KP_7");
+        press("bracketright");
+        return !is_at(newest_camera(), copied);
+    }));
+    EXPECT_TRUE(eventually([&] {
+        press("v");
+        return is_at(newest_camera(), copied);
+    }));
+    nlohmann::json const given{
+        {"position", {1, 20, 3}}, {"target", {1, 19, 3}}, {"up", {0, 0, -1}}, {"scene_time", 1.25}, {"exposure", 0.5}};
+    std::string const file = folder_.write("given.json", given.dump());
+    start(FRAMELET_VIEWER, {server_->address(), "--size", "320x200", "--camera", file});
+    EXPECT_TRUE(eventually([&] { return is_at(newest_camera(), given); }));
+}
+
 TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {
     fs::path const folder = folder_.path() / "framelet" / "cameras";
     std::string name;
