@@ -79,10 +79,8 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
         << static_cast<double>(s.bytes) * 1e-6 << " MB\n"
         << "  motion to photon  "
         << (run.photon_seconds < 0 ? "not measured: nothing moved" : milliseconds(run.photon_seconds)) << "\n"
-        << "  done              " << s.coverage * 100 << "% of the picture, "
-        << (run.converged_seconds < 0 ? "not yet as good as it gets"
-                                      : "as good as it gets " + after(run.converged_seconds))
-        << "\n";
+        << "  done              " << s.coverage * 100 << "% of the picture known, "
+        << (run.converged_seconds < 0 ? name_of(s.state()) : "finished " + after(run.converged_seconds)) << "\n";
     if (run.still_difference >= 0) {
         out << "  off the stills    " << std::setprecision(2) << run.still_difference * 100
             << "% of white, by mean of the sheet's moments\n"

@@ -1,9 +1,12 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
 #include <iostream>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include "client/connection_arguments.h"
+#include "client/core/camera/camera_path.h"
+#include "client/core/connection/unknown_certificate.h"
 #include "client/display_arguments.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/painter.h"
@@ -17,6 +20,7 @@
 #include "common/command_line/program_failure.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
+#include "protocol/stream/token.h"
 
 namespace {
 
@@ -50,6 +54,7 @@ int main(int argc, char** argv) {
     ConnectionArguments arguments;
     arguments.server = usual_server;
     std::string size = "1280x720";
+    std::string camera_file;
     bool fullscreen = false;
     std::string painter = "auto";
     DisplayChoice display;
@@ -68,6 +73,10 @@ int main(int argc, char** argv) {
         ->type_name("SCENE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    app.add_option("--camera", camera_file,
+                   "Camera file (JSON) to begin with, as C in the window copies it; of a flight its beginning")
+        ->type_name("FILE")
+        ->default_str("the scene's own view");
     CLI::Option const* const sized =
         app.add_option("--size", size, "Size of the window in pixels; without it as it was last time")
             ->type_name("WIDTHxHEIGHT")
@@ -92,11 +101,11 @@ int main(int argc, char** argv) {
 
     Viewport viewport;
     // A token belongs to one server: it is looked for anew for each that is named.
-    OptionsFor const options_for = [&arguments](std::string const& address) {
-        ConnectionArguments named = arguments;
-        named.server = address;
-        ConnectionOptions options = make_connection_options(named);
-        options.token = read_token(named);
+    OptionsFor const options_for = [&arguments](NamedServer const& named) {
+        ConnectionArguments filled = arguments;
+        filled.server = named.address;
+        ConnectionOptions options = make_connection_options(filled);
+        options.token = named.token.empty() ? read_token(filled) : token_in(named.token, "the token");
         return options;
     };
     try {
@@ -109,21 +118,31 @@ int main(int argc, char** argv) {
         return exit_usage(app, error.what());
     }
     try {
-        ConnectionOptions const options = options_for(arguments.server);
+        std::optional<CameraPath> camera;
+        if (!camera_file.empty()) {
+            camera = read_camera_path(camera_file);
+            if (display.exposure_ev) {
+                camera->moment.exposure_ev.reset();
+            }
+        }
+        ConnectionOptions const options = options_for({arguments.server});
         ViewerMemory memory = read_viewer_memory();
         if (sized->empty()) {
             viewport = memory.size.value_or(viewport);
         }
         Window window("framelet-viewer", viewport);
         SceneOpener opener(connect_for_window, Window::wake, server_options);
-        Start start{{}, needs_scene, memory.servers};
+        Start start{{}, needs_scene, memory.servers, arguments.tls || !arguments.authority_file.empty()};
         Connection first;
         if (!scenes.empty()) {
             opener.open_first(scenes, options);
         } else if (!server->empty()) {
             start.address = arguments.server;
             if (!options.reconnect) {
-                first = {connect_for_window(options), options};
+                try {
+                    first = {connect_for_window(options), options};
+                } catch (UnknownCertificate const&) { // the window asks
+                }
             }
         }
         window.show();
@@ -142,7 +161,7 @@ int main(int argc, char** argv) {
             std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
         }
         int const result =
-            Viewer(window, std::move(first), options_for, opener, display, memory, std::move(choice)).run();
+            Viewer(window, std::move(first), options_for, opener, display, camera, memory, std::move(choice)).run();
         remember(window, memory);
         return result;
     } catch (std::exception const& error) {

@@ -16,9 +16,6 @@ set(usual_headers
 
 # Owners: whoever takes their headers must have their flags and may define more macros, none fewer.
 target_precompile_headers(framelet_common PRIVATE ${usual_headers})
-if(TARGET framelet_scenes) # for itself alone: it has a flag that the others have not
-  target_precompile_headers(framelet_scenes PRIVATE ${usual_headers})
-endif()
 if(TARGET framelet_test_headers)
   target_precompile_headers(framelet_test_headers PRIVATE ${usual_headers} <numeric> <random> <gtest/gtest.h>)
 endif()

@@ -21,10 +21,6 @@ ClientCore::ClientCore(ConnectionOptions const& options, std::function<void()> o
 
 ClientCore::~ClientCore() = default;
 
-std::string const& ClientCore::notice() const {
-    return session_->connection->notice();
-}
-
 Welcome ClientCore::welcome() const {
     std::lock_guard const lock(session_->mutex);
     return session_->welcome;
@@ -41,7 +37,6 @@ void ClientCore::set_view(Camera const& wanted, Viewport viewport, int scene_cam
     AskedView& asked = session_->asked;
     if (!asked.equals(camera, viewport, scene_camera)) {
         session_->has_picture = session_->has_picture && asked.has_viewport(viewport);
-        session_->statistics.converged = false;
         asked.set(camera, viewport, scene_camera, Clock::now());
     }
     session_->send_view();
@@ -69,7 +64,6 @@ void ClientCore::request_clock(ClockRequest const& request) {
             return;
         }
         session_->server.ask_clock(request, Clock::now());
-        session_->statistics.converged = false;
     }
     session_->connection->send(request);
 }
@@ -201,9 +195,7 @@ bool ClientCore::controls() const {
 
 bool ClientCore::is_complete() const {
     std::lock_guard const lock(session_->mutex);
-    ClockState const& clock = session_->server.status().clock;
-    return session_->is_settled() && (session_->has_picture || !session_->arrived.empty()) &&
-           (!session_->is_smooth || clock.playing || session_->shown_time == clock.time);
+    return session_->is_complete();
 }
 
 Status ClientCore::status() const {
@@ -226,6 +218,7 @@ ClientStatistics ClientCore::statistics() const {
     ClientStatistics out = session_->statistics;
     out.seconds = ClientSession::seconds_between(session_->start, Clock::now());
     out.waiting_bytes = session_->arrived.bytes();
+    out.converged = session_->is_complete();
     return out;
 }
 

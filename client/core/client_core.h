@@ -38,8 +38,6 @@ public:
     ClientCore(ClientCore const&) = delete;
     ClientCore& operator=(ClientCore const&) = delete;
 
-    /// One line that the user should know of how the session was opened; mostly empty.
-    std::string const& notice() const;
     /// The Welcome of the newest session.
     Welcome welcome() const;
     /// A number that counts up where a session is of another scene than the one before, of which nothing is held any

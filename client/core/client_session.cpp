@@ -64,7 +64,6 @@ void ClientSession::pause_session(std::string reason) {
         interruption = std::move(reason);
         server.stop(Clock::now());
         pictures.pause(server.status().clock.time);
-        statistics.converged = false;
     }
     tell_news();
 }
@@ -150,7 +149,6 @@ void ClientSession::receive(Message message) {
         std::lock_guard const lock(mutex);
         server.note(*news_of_server, Clock::now());
         told_evictions.note_come(news_of_server->evicted);
-        statistics.converged = news_of_server->converged;
         statistics.server_samples_per_second = news_of_server->samples_per_second;
         statistics.server_busy = static_cast<double>(news_of_server->busy);
     } else {
@@ -232,11 +230,13 @@ void ClientSession::take_in() {
     tell_evicted(maker);
     Clock::time_point const after = Clock::now();
     double const coverage = taken.empty() ? -1 : maker.coverage();
+    FrameletCache const& newest = maker.pool().newest();
+    bool const is_fine = !taken.empty() && newest.is_covered_from(maker.pool().plane().pixel_depth());
     std::lock_guard const lock(mutex);
     statistics.stale_batches += stale;
     statistics.insert_seconds += seconds_between(before, after);
     has_picture = !maker.is_empty();
-    note_held(maker, coverage, after);
+    note_held(maker, coverage, is_fine, after);
     arrived.give_back(taken);
 }
 
@@ -253,9 +253,10 @@ void ClientSession::tell_evicted(PictureMaker& maker) {
     }
 }
 
-void ClientSession::note_held(PictureMaker const& maker, double coverage, Clock::time_point now) {
+void ClientSession::note_held(PictureMaker const& maker, double coverage, bool is_fine, Clock::time_point now) {
     if (coverage >= 0) {
         statistics.coverage = coverage;
+        statistics.is_fine = is_fine;
         statistics.cached_framelets = maker.pool().framelet_count();
     }
     statistics.cached_bytes = pictures.memory_bytes();
@@ -270,6 +271,12 @@ bool ClientSession::is_settled() const {
     Status const& status = server.status();
     return status.converged && asked.exists() && status.camera_number == asked.view().number &&
            last_batch >= status.last_batch;
+}
+
+bool ClientSession::is_complete() const {
+    ClockState const& clock = server.status().clock;
+    return is_settled() && (has_picture || !arrived.empty()) &&
+           (!is_smooth || clock.playing || shown_time == clock.time);
 }
 
 bool ClientSession::is_clean_start() {

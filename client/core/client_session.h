@@ -44,6 +44,8 @@ struct ClientSession {
     /// True once the server has said that the newest view has converged, and all its batches have come. Call it with
     /// `mutex` held.
     bool is_settled() const;
+    /// As `ClientCore::is_complete`. Call it with `mutex` held.
+    bool is_complete() const;
     /// True once after another scene has taken the place of the one that was shown.
     bool is_clean_start();
     /// The request for a picture of what will be the present when it is seen.
@@ -113,7 +115,7 @@ private:
     /// Tells the server of all framelets that the maker has evicted. Call it with `picture_mutex` held.
     void tell_evicted(PictureMaker& maker);
     /// Notes in the statistics what is held. Call it with `mutex` held. `coverage` < 0: nothing has come.
-    void note_held(PictureMaker const& maker, double coverage, Clock::time_point now);
+    void note_held(PictureMaker const& maker, double coverage, bool is_fine, Clock::time_point now);
     /// Notes the time from when this camera was sent until the first batch seen from it was received. Call it with
     /// `mutex` held.
     void note_round_trip(std::uint64_t camera_number, Clock::time_point received);

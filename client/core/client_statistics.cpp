@@ -12,6 +12,14 @@ double ratio(double amount, std::uint64_t count) {
 
 } // namespace
 
+PictureState ClientStatistics::state() const {
+    return converged ? PictureState::finished : is_fine ? PictureState::refining : PictureState::coarse;
+}
+
+char const* name_of(PictureState state) {
+    return state == PictureState::finished ? "finished" : state == PictureState::refining ? "refining" : "coarse";
+}
+
 double ClientStatistics::bytes_per_sample() const {
     return ratio(static_cast<double>(bytes), samples);
 }

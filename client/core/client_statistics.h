@@ -10,6 +10,13 @@ namespace framelet {
 /// each, and are filled from their neighbours.
 inline constexpr double full_coverage = 0.99;
 
+/// How far the picture has come.
+enum class PictureState : std::uint8_t {
+    coarse, ///< some places have fewer samples than pixels, as what moves mostly has
+    refining, ///< more samples, or exact ones, are still to come
+    finished, ///< nothing more will come until something changes
+};
+
 /// Counts and times since the viewer's first session was opened.
 struct ClientStatistics {
     double seconds = 0;
@@ -34,17 +41,22 @@ struct ClientStatistics {
     std::uint64_t cameras_sent = 0;
     double server_samples_per_second = 0;
     double server_busy = 0; ///< the share of the last second that it had something to do, [0, 1]
-    bool converged = false;
+    bool is_fine = false; ///< every place has a sample a pixel or more, of what stands
+    bool converged = false; ///< the server has nothing more to say about the newest view, and all of it has come
     /// Seconds from when the camera of the last picture was set, or the moment that it shows was the present, until the
     /// picture was seen; -1: it shows nothing new.
     double photon_seconds = -1;
     double lag_seconds = 0; ///< by which the scene is shown late, as asked for; 0: it is not
     std::uint64_t reconnections = 0;
 
+    PictureState state() const;
     double bytes_per_sample() const;
     double decode_ns_per_sample() const;
     double reconstruct_ns_per_pixel() const;
 };
+
+/// The state in one word.
+char const* name_of(PictureState state);
 
 /// The median of times, seconds; -1 where there are none.
 double median_seconds(std::vector<double> times);

@@ -12,7 +12,8 @@ int main(int argc, char** argv) {
         return *exit_code;
     }
     try { // the viewer starts the server, and shows how far that has loaded the scene
-        framelet::become(framelet::find_program("framelet-viewer"), std::get<framelet::ViewerArguments>(parsed));
+        auto const& call = std::get<framelet::ProgramCall>(parsed);
+        framelet::become(framelet::find_program(call.program), call.arguments);
     } catch (std::exception const& error) {
         std::cerr << "framelet: " << framelet::failure_text(error) << '\n';
         return 1;

@@ -1,6 +1,7 @@
 #include "client/launcher/options.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <iterator>
 
 #include "client/painter.h"
@@ -32,7 +33,7 @@ constexpr char const* for_server = "--server-option=";
 
 /// Passes the options of a group on to another program as they were written, each behind `prefix`. `--server-config`
 /// and the like stand for that program's `--config`.
-void pass_on(CLI::App const& app, std::string const& group, std::string const& prefix, ViewerArguments& to) {
+void pass_on(CLI::App const& app, std::string const& group, std::string const& prefix, std::vector<std::string>& to) {
     for (CLI::Option const* const option : options_of_group(app, group)) {
         std::string const name = option->get_name().ends_with("-config") ? "--config" : option->get_name();
         for (std::string const& value : option->results()) {
@@ -43,7 +44,7 @@ void pass_on(CLI::App const& app, std::string const& group, std::string const& p
 
 } // namespace
 
-std::variant<ViewerArguments, int> parse_options(int argc, char const* const* argv) {
+std::variant<ProgramCall, int> parse_options(int argc, char const* const* argv) {
     std::vector<std::string> scenes;
     char const* const* const end = argv + argc;
     char const* const* const separator = std::find(argv, end, std::string("--"));
@@ -58,8 +59,10 @@ std::variant<ViewerArguments, int> parse_options(int argc, char const* const* ar
     auto const option = [&](char const* name, std::string const& text) { return view->add_option(name, text); };
     auto const flag = [&](char const* name, std::string const& text) { view->add_flag(name, text); };
     view->option_defaults()->group(scene_group);
-    view->add_option("SCENE", scenes,
-                     "Scene file: .gltf, .glb, .obj and what else framelet-server reads; several are shown together")
+    view->add_option(
+            "SCENE", scenes,
+            "Scene file: .gltf, .glb, .obj and what else framelet-server reads; several are shown together; of a "
+            "folder the scene files in it and below are listed")
         ->required();
     option("--environment", "Environment map (.hdr, .exr) that lights the scene")->type_name("FILE");
     option("--clip", "Animation clip to play, by name; may be given several times")
@@ -74,6 +77,7 @@ std::variant<ViewerArguments, int> parse_options(int argc, char const* const* ar
     view->option_defaults()->group(window_group);
     option("--size", "Size of the window in pixels")->type_name("WIDTHxHEIGHT")->check(readable_by(parse_size));
     flag("--fullscreen", "Fill the screen");
+    option("--camera", "Camera file (JSON) to begin with")->type_name("FILE");
     option("--painter", "What paints: the graphics card (gpu), the processor (cpu), or whichever is better (auto)")
         ->type_name("auto|cpu|gpu")
         ->check(readable_by(parse_painter));
@@ -83,14 +87,18 @@ std::variant<ViewerArguments, int> parse_options(int argc, char const* const* ar
     } catch (CLI::ParseError const& error) {
         return exit_usage(app, error);
     }
-    ViewerArguments out;
+    std::error_code unknown;
+    if (scenes.size() == 1 && std::filesystem::is_directory(scenes.front(), unknown)) {
+        return ProgramCall{"framelet-server", {"--list-as=framelet view", "--", scenes.front()}};
+    }
+    std::vector<std::string> out;
     pass_on(*view, window_group, "", out);
     std::ranges::transform(scenes, std::back_inserter(out), [](std::string const& scene) { return "--open=" + scene; });
     out.emplace_back("--needs-scene");
     pass_on(*view, scene_group, for_server, out);
     std::transform(separator == end ? end : separator + 1, end, std::back_inserter(out),
                    [](char const* word) { return for_server + std::string(word); });
-    return out;
+    return ProgramCall{"framelet-viewer", out};
 }
 
 } // namespace framelet

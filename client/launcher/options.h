@@ -1,4 +1,4 @@
-// The command line of framelet, as that of framelet-viewer.
+// The command line of framelet, as that of the program that it becomes.
 #pragma once
 
 #include <string>
@@ -7,10 +7,13 @@
 
 namespace framelet {
 
-using ViewerArguments = std::vector<std::string>;
+struct ProgramCall {
+    std::string program; ///< its name
+    std::vector<std::string> arguments;
+};
 
-/// The arguments of the viewer, or the exit code where there is nothing to run (help, version: 0; bad usage: 2, with
-/// one line on stderr).
-std::variant<ViewerArguments, int> parse_options(int argc, char const* const* argv);
+/// The viewer with what it is to show or, for a folder, the server that lists its scenes; or the exit code where there
+/// is nothing to run (help, version: 0; bad usage: 2, with one line on stderr).
+std::variant<ProgramCall, int> parse_options(int argc, char const* const* argv);
 
 } // namespace framelet

@@ -2,6 +2,7 @@
 
 #include <iostream>
 #include <thread>
+#include <utility>
 
 #include "client/window/window.h"
 #include "common/error.h"
@@ -17,14 +18,29 @@ std::string Attempts::message() const {
     if (!has_failed()) {
         return "connecting to " + server + " ...";
     }
+    if (unknown_) {
+        return "No authority vouches for the certificate of " + server +
+               ", which is new here.\n\nIts SHA-256 fingerprint is\n" + unknown_->fingerprint +
+               "\n\nTrust it if the server printed the same at its start. No token has been sent.";
+    }
     return (is_refused_ ? "cannot connect to " + server : "waiting for " + server + " ...") + "\n\n" + failure_ +
-           "\n\nR or Enter: try now     Esc: quit";
+           "\n\nR or Enter: try now     Ctrl+Q: quit";
 }
 
 void Attempts::hurry() {
     back_off_.reset();
     next_ = Clock::now();
     is_refused_ = false;
+    unknown_.reset();
+}
+
+void Attempts::trust() {
+    try {
+        std::exchange(unknown_, std::nullopt).value().trust();
+        hurry();
+    } catch (InputError const& error) {
+        note(error.what());
+    }
 }
 
 std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
@@ -42,6 +58,10 @@ std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
     }
     try {
         return attempt_.get();
+    } catch (UnknownCertificate const& unknown) {
+        is_refused_ = true;
+        unknown_ = unknown;
+        note(unknown.what());
     } catch (std::exception const& error) {
         is_refused_ = dynamic_cast<ConnectionError const*>(&error) == nullptr ||
                       dynamic_cast<ConnectionRefusal const*>(&error) != nullptr; // else it may help to try again

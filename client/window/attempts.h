@@ -5,11 +5,13 @@
 #include <chrono>
 #include <future>
 #include <memory>
+#include <optional>
 #include <random>
 #include <string>
 
 #include "client/core/client_core.h"
 #include "client/core/connection/back_off.h"
+#include "client/core/connection/unknown_certificate.h"
 
 namespace framelet {
 
@@ -24,13 +26,18 @@ public:
 
     ConnectionOptions const& options() const { return options_; }
     bool has_failed() const { return !failure_.empty(); } ///< at least once
-    /// Text for the user, with the keys that `hurry` is for.
+    /// Text for the user, with the keys that `hurry` is for, or the question below.
     std::string message() const;
+    /// True where the user is to say whether the server's certificate is to be trusted: then `trust`, or no more
+    /// attempts.
+    bool asks_trust() const { return unknown_.has_value(); }
+    /// Trusts it from now on, and tries again.
+    void trust();
 
     /// Tries at once, also a server that has refused.
     void hurry();
     /// The session once there is one, else null; begins attempts when they are due. `is_refusal_fatal`: a refusal is
-    /// thrown.
+    /// thrown, but for a certificate that the user may trust.
     std::unique_ptr<ClientCore> poll(bool is_refusal_fatal = false);
 
 private:
@@ -40,6 +47,7 @@ private:
     ConnectionOptions options_;
     std::future<std::unique_ptr<ClientCore>> attempt_;
     std::string failure_; ///< of the last attempt; empty: none has ended
+    std::optional<UnknownCertificate> unknown_; ///< what the last attempt has met
     bool is_refused_ = false; ///< no other attempt follows by itself
     BackOff back_off_;
     std::minstd_rand random_{std::random_device{}()};

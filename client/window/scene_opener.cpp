@@ -33,7 +33,7 @@ std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& o
 } // namespace
 
 SceneOpener::SceneOpener(Connect connect, std::function<void()> wake, std::vector<std::string> server_options)
-    : connect_(std::move(connect)), wake_(std::move(wake)), server_options_(std::move(server_options)) {}
+    : dialog_(wake), connect_(std::move(connect)), wake_(std::move(wake)), server_options_(std::move(server_options)) {}
 
 void SceneOpener::open_first(std::vector<std::string> const& files, ConnectionOptions connection) {
     begin({files, server_options_, std::move(connection)});
@@ -63,7 +63,16 @@ void SceneOpener::begin(Scene scene) {
     }
 }
 
+void SceneOpener::choose() {
+    try {
+        dialog_.open();
+    } catch (std::exception const& error) {
+        complaint_ = error.what();
+    }
+}
+
 std::optional<Connection> SceneOpener::poll() {
+    open(dialog_.poll());
     if (!opening_) {
         return {};
     }

@@ -13,6 +13,7 @@
 
 #include "client/processes/private_server.h"
 #include "client/window/connection.h"
+#include "client/window/file_dialog.h"
 #include "client/window/overlay/overlay_content.h"
 
 namespace framelet {
@@ -33,6 +34,8 @@ public:
     /// Begins to open the files that were dropped on the window, as one scene. One that is still being opened is given
     /// up.
     void open(std::vector<std::string> const& files);
+    /// Lets the user choose files, which are opened likewise.
+    void choose();
     /// The session with the new scene, once there is one; the server of the one that was open before has ended then.
     std::optional<Connection> poll();
     /// The reason why nothing was opened, told once; empty where there is none.
@@ -68,6 +71,7 @@ private:
     void begin(Scene scene);
     std::optional<Connection> session();
 
+    FileDialog dialog_;
     Connect const connect_;
     std::function<void()> const wake_;
     std::vector<std::string> const server_options_;

@@ -18,6 +18,7 @@ struct Start {
     std::optional<std::string> address; ///< nothing: what `opener` opens, and where that is nothing the user is asked
     bool needs_scene = false; ///< it ends where `opener` cannot open a scene
     std::vector<std::string> recent; ///< servers of before
+    bool always_tls = false; ///< the command line says so
 };
 
 /// Tries to reach a server for as long as it takes, less often the longer, and at once when the user asks for it. One

@@ -22,7 +22,8 @@ constexpr double idle_seconds = 0.25;
 } // namespace
 
 Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-               DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter)
+               DisplayChoice const& choice, std::optional<CameraPath> const& camera, ViewerMemory& memory,
+               CanvasChoice painter)
     : window_(window), connection_(std::move(connection.options)), options_for_(std::move(options_for)),
       opener_(opener), memory_(memory), overlay_(window.handle()), chosen_exposure_(choice.exposure_ev),
       settings_(choice.settings()), lag_seconds_(choice.lag_seconds.value_or(memory.lag_seconds)),
@@ -31,14 +32,17 @@ Viewer::Viewer(Window& window, Connection connection, OptionsFor options_for, Sc
     settings_.bias = memory_.bias;
     adopt(std::move(connection.core));
     if (note_.empty()) {
-        say(core_->notice().empty() ? "F1: help" : core_->notice());
+        say("F1: help");
+    }
+    if (camera) {
+        take_camera(*camera);
     }
     note_server();
 }
 
 void Viewer::note_server() {
     if (!opener_.has_open()) { // a private server will not be there next time
-        memory_.note_server(connection_.server.text());
+        memory_.note_server(connection_.server_name());
     }
 }
 
@@ -50,9 +54,6 @@ void Viewer::adopt(std::unique_ptr<ClientCore> core) {
     bool const same_scene = core_ && core->welcome().scene_identity != 0 &&
                             core->welcome().scene_identity == core_->welcome().scene_identity;
     core_ = std::move(core);
-    if (!core_->notice().empty()) {
-        std::cerr << "framelet-viewer: " << core_->notice() << std::endl;
-    }
     lost_.clear();
     meter_ = RateMeter();
     core_->set_smoothing(lag_seconds_);
@@ -122,7 +123,7 @@ int Viewer::run() {
         redraw = redraw || input.redraw;
         // A press of the mouse is seen in one frame, its release in the next, and what came of it in a third.
         overlay_frames = input.touched_overlay ? 3 : overlay_frames;
-        opener_.open(input.dropped);
+        take_dropped(input.dropped);
         watch_opener();
         watch_connection();
         watch_recording();
@@ -203,6 +204,7 @@ std::string Viewer::painter_text() const {
 /// Uploads what has changed; true when something has.
 bool Viewer::update_shown_picture() {
     double const until_seen = core_->making_seconds() + showing_.expected();
+    picture_state_ = core_->statistics().state(); // before: what comes meanwhile need not be in the picture
     bool const changed = make_picture(Clock::now() + DisplayTiming::duration(until_seen));
     made_ = seconds_now();
     if (changed) {
@@ -245,9 +247,9 @@ void Viewer::say(std::string note, double seconds) {
 }
 
 /// Begins to connect to a server that the user has named.
-void Viewer::try_server(std::string const& address) {
+void Viewer::try_server(NamedServer const& server) {
     try {
-        attempts_.emplace(options_for_(address));
+        attempts_.emplace(options_for_(server));
         opener_.give_up(); // the newest wish counts
     } catch (InputError const& error) {
         say(error.what(), long_note_seconds);
@@ -304,13 +306,17 @@ void Viewer::watch_opener() {
 /// Takes the figures of the overlay, also while nobody looks at them: plots show what was before.
 void Viewer::take_figures() {
     ClientStatistics const statistics = core_->statistics();
+    figures_.rows = figure_rows(statistics, time_line(), core_->controls());
     if (!meter_.update(seconds_now(), statistics.bytes) && !figures_.plots.empty()) {
         return;
     }
     history_.add(meter_, statistics);
     figures_.plots = history_.plots();
-    figures_.rows = figure_rows(statistics, core_->clock(), core_->controls());
     figures_.details = detail_rows(statistics, meter_, window_.framebuffer_size(), painter_text());
+}
+
+TimeLine Viewer::time_line() const {
+    return {core_->clock(), core_->welcome().animation_duration, clock_lacks(), settings_.exposure_ev};
 }
 
 CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
@@ -328,14 +334,13 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
     };
     out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
                                      : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);
-    out.files_lack = camera_file_lacks(present_camera());
     return out;
 }
 
 OverlayContent Viewer::overlay_content() {
     OverlayContent out;
     if (show_help_) {
-        out.help = help_rows(clock_lacks());
+        out.help = help_groups(clock_lacks());
     }
     if (memory_.shows_statistics) {
         out.statistics = figures_;
@@ -343,7 +348,7 @@ OverlayContent Viewer::overlay_content() {
     }
     if (memory_.shows_bar) {
         Welcome const welcome = core_->welcome();
-        out.time_line = {core_->clock(), welcome.animation_duration, clock_lacks(), settings_.exposure_ev};
+        out.time_line = time_line();
         out.cameras = camera_menu(welcome);
         out.bias = settings_.bias;
         out.overlays = {drawn_over_, confidence_lacks(settings_.reproject)};
@@ -361,10 +366,13 @@ OverlayContent Viewer::overlay_content() {
         {out.sign, interrupted_ && lost_.empty(), window_.has_mouse_look(),
          recorder_ ? with_keys(progress_text(recorder_->progress()), Command::toggle_recording) : std::string()});
     if (!lost_.empty()) {
-        out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Esc: quit";
-        out.address = {opener_.has_open() ? usual_server : connection_.server.text(), memory_.servers};
+        out.message = attempts_ ? attempts_->message() : lost_ + "\n\nR or Enter: connect again     Ctrl+Q: quit";
+        out.asks_trust = attempts_ && attempts_->asks_trust();
     } else if (picture_.rgba.empty()) {
         out.message = "waiting for the first picture ...";
+    }
+    if (!lost_.empty() && !out.asks_trust) {
+        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers};
     }
     return out;
 }

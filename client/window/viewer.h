@@ -6,8 +6,10 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "client/core/camera/camera_controller.h"
+#include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
 #include "client/core/picture/making_time.h"
 #include "client/display_choice.h"
@@ -15,6 +17,7 @@
 #include "client/video/recorder.h"
 #include "client/window/attempts.h"
 #include "client/window/connection.h"
+#include "client/window/escape_key.h"
 #include "client/window/kept/bookmarks.h"
 #include "client/window/kept/viewer_memory.h"
 #include "client/window/overlay/overlay.h"
@@ -28,10 +31,11 @@ namespace framelet {
 class Viewer {
 public:
     /// `connection` wakes the window on news; `options_for` is for servers that the user names. What `choice` does not
-    /// say is as it is remembered. Scenes that are dropped are opened by `opener`, what is to be remembered goes into
-    /// `memory`; both must outlive this. `painter` is of the window's context.
+    /// say is as it is remembered. `camera`: to begin with. Scenes that are dropped are opened by `opener`, what is to
+    /// be remembered goes into `memory`; both must outlive this. `painter` is of the window's context.
     Viewer(Window& window, Connection connection, OptionsFor options_for, SceneOpener& opener,
-           DisplayChoice const& choice, ViewerMemory& memory, CanvasChoice painter);
+           DisplayChoice const& choice, std::optional<CameraPath> const& camera, ViewerMemory& memory,
+           CanvasChoice painter);
 
     /// Runs until the user quits, or a signal tells the program to end. Returns the exit code: 1 where the user quit
     /// and the server was gone.
@@ -44,12 +48,13 @@ private:
 
     void adopt(std::unique_ptr<ClientCore> core);
     void note_server();
-    void try_server(std::string const& address);
+    void try_server(NamedServer const& server);
     void look_at_scene();
     bool apply(WindowInput const& input, double seconds);
     void apply(OverlayActions const& asked);
     void take_pivot(WindowInput const& input);
     void apply(Command command);
+    void escape();
     std::string clock_lacks() const;
     void ask_clock(std::uint8_t fields, ClockState const& state);
     void step_clock(double seconds);
@@ -69,6 +74,9 @@ private:
     void remove_bookmark(int number);
     void go_to_bookmark(int number);
     void copy_camera(bool saves);
+    void take_camera(CameraPath const& path);
+    void take_dropped(std::vector<std::string> const& files);
+    void paste_camera();
     void say(std::string note, double seconds = note_seconds);
     void watch_connection();
     void watch_opener();
@@ -77,6 +85,7 @@ private:
     Picture const& shown_picture();
     std::string painter_text() const;
     void take_figures();
+    TimeLine time_line() const;
     CameraMenu camera_menu(Welcome const& welcome) const;
     OverlayContent overlay_content();
     void remember_exposure();
@@ -111,6 +120,7 @@ private:
     CanvasChoice painter_;
     Picture picture_; ///< where it is not on the canvas; else it has its size alone
     bool is_on_canvas_ = false;
+    PictureState picture_state_ = PictureState::coarse; ///< at least so far had the picture come
     double made_ = 0; ///< when the picture was made, by `seconds_now`
     MakingTime showing_; ///< from when a picture is made until it is on the display
     std::vector<PixelRect> changed_;
@@ -128,6 +138,7 @@ private:
     double recording_since_ = 0;
     std::string note_;
     double note_until_ = 0;
+    EscapeKey escape_;
     bool quit_ = false;
     Clock::time_point const start_ = Clock::now();
 };

@@ -1,6 +1,9 @@
 // The cameras that a viewer looks through: those of the scene, bookmarks, and its own as a file.
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 
+#include "client/window/dropped_files.h"
 #include "client/window/kept/user_files.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/overlay/lacks.h"
@@ -34,25 +37,31 @@ void Viewer::leave_scene_camera() {
 }
 
 void Viewer::take_view(Command command) {
+    struct AxisView {
+        Command command;
+        Vec3 forward, up;
+        char const* name;
+    };
+    // glTF's scenes look towards +Z, and up is +Y.
+    static constexpr AxisView views[] = {
+        {Command::view_front, {0, 0, -1}, {0, 1, 0}, "from the front"},
+        {Command::view_back, {0, 0, 1}, {0, 1, 0}, "from behind"},
+        {Command::view_right, {-1, 0, 0}, {0, 1, 0}, "from the right"},
+        {Command::view_left, {1, 0, 0}, {0, 1, 0}, "from the left"},
+        {Command::view_top, {0, -1, 0}, {0, 0, -1}, "from above"},
+        {Command::view_below, {0, 1, 0}, {0, 0, 1}, "from below"},
+    };
     leave_scene_camera();
     is_at_bookmark_ = false;
-    switch (command) { // glTF's scenes look towards +Z, and up is +Y
-    case Command::view_front:
-        controller_->look_along({0, 0, -1}, {0, 1, 0});
-        say("from the front");
-        break;
-    case Command::view_right:
-        controller_->look_along({-1, 0, 0}, {0, 1, 0});
-        say("from the right");
-        break;
-    case Command::view_top:
-        controller_->look_along({0, -1, 0}, {0, 0, -1});
-        say("from above");
-        break;
-    default:
+    auto const* const view = std::ranges::find(views, command, &AxisView::command);
+    if (view == std::end(views)) {
         controller_->toggle_projection();
         say(controller_->camera().projection == Projection::orthographic ? "orthographic" : "perspective");
+        return;
     }
+    controller_->look_along(view->forward, view->up);
+    controller_->fit(window_.framebuffer_size(), overlay_.covered_below());
+    say(view->name);
 }
 
 Camera Viewer::present_camera() const {
@@ -115,17 +124,69 @@ void Viewer::go_to_bookmark(int number) {
 }
 
 void Viewer::copy_camera(bool saves) {
+    CameraMoment moment;
+    if (core_->welcome().animation_duration > 0) {
+        ClockState const clock = core_->clock();
+        moment.scene_time = std::max(clock.time - core_->statistics().lag_seconds, 0.0);
+        moment.paused = !clock.playing;
+    }
+    moment.exposure_ev = settings_.exposure_ev;
+    std::string const text = camera_file_text(present_camera(), moment);
+    if (!saves) {
+        window_.set_clipboard(text);
+        say("view copied: " + key_names(Command::paste_camera) + " goes to it, --camera reads it");
+        return;
+    }
     try {
-        std::string const text = camera_file_text(present_camera());
-        if (!saves) {
-            window_.set_clipboard(text);
-            say("camera copied, as framelet-client --camera reads it");
-            return;
-        }
         std::error_code error;
         fs::path const file = new_file_name(fs::current_path(error), ".camera.json");
         write_user_file(file, text);
-        say("saved " + file.string() + ", for framelet-client --camera", long_note_seconds);
+        say("saved " + file.string() + ", for --camera, or to be dropped here", long_note_seconds);
+    } catch (InputError const& failure) {
+        say(failure.what(), long_note_seconds);
+    }
+}
+
+void Viewer::paste_camera() {
+    try {
+        take_camera(parse_camera_path(window_.clipboard(), "of the clipboard"));
+    } catch (InputError const& failure) {
+        say(failure.what(), long_note_seconds);
+    }
+}
+
+/// Looks from where a file says, at the moment and with the exposure that it says. Of a flight that is its beginning.
+void Viewer::take_camera(CameraPath const& path) {
+    say("the view that was given");
+    is_at_bookmark_ = false;
+    if (path.scene_camera >= 0) {
+        choose_scene_camera(path.scene_camera);
+    } else {
+        scene_camera_ = -1;
+        controller_->set_camera(path.at(0));
+    }
+    settings_.exposure_ev = path.moment.exposure_ev.value_or(settings_.exposure_ev);
+    core_->set_settings(settings_);
+    ClockRequest const clock = path.moment.clock_request();
+    if (clock.set == 0) {
+        return;
+    }
+    if (std::string const lacks = clock_lacks(); !lacks.empty()) {
+        say("the view that was given, not its moment: " + lacks, long_note_seconds);
+        return;
+    }
+    core_->request_clock(clock);
+}
+
+/// Takes the last of the cameras among the files, and opens the scenes.
+void Viewer::take_dropped(std::vector<std::string> const& files) {
+    DroppedFiles const dropped = sort_dropped(files);
+    opener_.open(dropped.scenes);
+    if (dropped.cameras.empty()) {
+        return;
+    }
+    try {
+        take_camera(read_camera_path(dropped.cameras.back()));
     } catch (InputError const& failure) {
         say(failure.what(), long_note_seconds);
     }

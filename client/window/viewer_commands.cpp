@@ -102,11 +102,37 @@ void Viewer::apply(OverlayActions const& asked) {
     if (asked.removed_bookmark) {
         remove_bookmark(*asked.removed_bookmark);
     }
-    if (asked.address) {
-        try_server(*asked.address);
+    if (asked.server) {
+        try_server(*asked.server);
+    }
+    if (asked.trusts && attempts_) {
+        *asked.trusts ? attempts_->trust() : attempts_.reset();
     }
     if (asked.drawn_over) {
         draw_over(*asked.drawn_over);
+    }
+}
+
+void Viewer::escape() {
+    switch (escape_.press({window_.has_mouse_look(), overlay_.has_menu(), show_help_, window_.is_fullscreen()},
+                          seconds_now())) {
+    case EscapeLeaves::mouse_look:
+        window_.set_mouse_look(false);
+        break;
+    case EscapeLeaves::menu:
+        overlay_.close_menu();
+        break;
+    case EscapeLeaves::help:
+        show_help_ = false;
+        break;
+    case EscapeLeaves::full_screen:
+        window_.toggle_fullscreen();
+        break;
+    case EscapeLeaves::nothing_yet:
+        say(escape_note(), EscapeKey::most_pause);
+        break;
+    case EscapeLeaves::program:
+        quit_ = true;
     }
 }
 
@@ -120,12 +146,7 @@ void Viewer::apply(Command command) {
         window_.set_mouse_look(!window_.has_mouse_look());
         break;
     case Command::escape:
-        if (window_.has_mouse_look()) {
-            window_.set_mouse_look(false);
-            break;
-        }
-        quit_ = !overlay_.has_menu();
-        overlay_.close_menu();
+        escape();
         break;
     case Command::reset:
     case Command::reconnect:
@@ -140,6 +161,9 @@ void Viewer::apply(Command command) {
             is_at_bookmark_ = false;
             controller_->reset();
         }
+        break;
+    case Command::open_file:
+        opener_.choose();
         break;
     case Command::play_or_pause:
         clock.playing = !clock.playing;
@@ -182,11 +206,14 @@ void Viewer::apply(Command command) {
     case Command::fit_scene:
         leave_scene_camera();
         is_at_bookmark_ = false;
-        controller_->fit(window_.framebuffer_size());
+        controller_->fit(window_.framebuffer_size(), overlay_.covered_below());
         break;
     case Command::view_front:
+    case Command::view_back:
     case Command::view_right:
+    case Command::view_left:
     case Command::view_top:
+    case Command::view_below:
     case Command::toggle_projection:
         take_view(command);
         break;
@@ -238,6 +265,9 @@ void Viewer::apply(Command command) {
     case Command::copy_camera:
         copy_camera(false);
         break;
+    case Command::paste_camera:
+        paste_camera();
+        break;
     case Command::save_camera:
         copy_camera(true);
         break;
@@ -261,7 +291,7 @@ void Viewer::ask_clock(std::uint8_t fields, ClockState const& state) {
         return;
     }
     core_->request_clock({fields, state});
-    say("clock " + clock_text(core_->clock()));
+    say("clock " + clock_text(time_line()));
 }
 
 void Viewer::step_clock(double seconds) {
@@ -329,7 +359,7 @@ void Viewer::save_screenshot(bool with_depth) {
         } else {
             write_png(file, shown_picture());
         }
-        say("saved " + file.string() + lacks, long_note_seconds);
+        say(saved_text(file, lacks, picture_state_), long_note_seconds);
     } catch (InputError const& failure) {
         say(failure.what(), long_note_seconds);
     }

@@ -31,6 +31,14 @@ std::string last_glfw_error() {
     return text == nullptr ? "no reason given" : text;
 }
 
+/// The key as it is labelled: letters with Ctrl, other than those that fly, are not told by where they lie. Ctrl+A on a
+/// French keyboard is where Ctrl+Q is on others.
+int labelled_key(int code, int scancode) {
+    char const* const name = glfwGetKeyName(code, scancode);
+    bool const is_letter = name != nullptr && name[0] >= 'a' && name[0] <= 'z' && name[1] == '\0';
+    return is_letter ? GLFW_KEY_A + (name[0] - 'a') : code;
+}
+
 /// The axes of the first gamepad; nothing where none is connected.
 std::optional<GamepadAxes> read_gamepad() {
     GLFWgamepadstate state;
@@ -108,17 +116,16 @@ struct Window::Impl {
     bool button(int number) const { return glfwGetMouseButton(window, number) == GLFW_PRESS; }
     bool shift() const { return held(GLFW_KEY_LEFT_SHIFT) || held(GLFW_KEY_RIGHT_SHIFT); }
 
-    void key(int code, int action, int mods) {
+    void key(int code, int scancode, int action, int mods) {
         if (action == GLFW_RELEASE) {
-            return;
-        }
-        if (is_typing) {
-            input.touched_overlay = true;
             return;
         }
         KeyModifiers const with{(mods & GLFW_MOD_SHIFT) != 0, (mods & GLFW_MOD_CONTROL) != 0,
                                 (mods & GLFW_MOD_ALT) != 0};
-        if (auto const command = command_of_key(code, with, action == GLFW_REPEAT)) {
+        auto const command =
+            command_of_key(with.control ? labelled_key(code, scancode) : code, with, action == GLFW_REPEAT);
+        input.touched_overlay = input.touched_overlay || is_typing;
+        if (command && (!is_typing || command == Command::quit || command == Command::open_file)) {
             input.commands.push_back(*command);
         }
     }
@@ -275,8 +282,9 @@ struct Window::Impl {
 
     void listen() {
         glfwSetWindowUserPointer(window, this);
-        glfwSetKeyCallback(window,
-                           [](GLFWwindow* w, int key, int, int action, int mods) { of(w).key(key, action, mods); });
+        glfwSetKeyCallback(window, [](GLFWwindow* w, int key, int scancode, int action, int mods) {
+            of(w).key(key, scancode, action, mods);
+        });
         glfwSetCursorPosCallback(window, [](GLFWwindow* w, double, double) { of(w).cursor_moved(); });
         glfwSetMouseButtonCallback(window, [](GLFWwindow* w, int number, int action, int) {
             action == GLFW_PRESS ? of(w).pressed(number) : of(w).released();
@@ -414,6 +422,11 @@ bool Window::has_mouse_look() const {
 
 void Window::set_clipboard(std::string const& text) {
     glfwSetClipboardString(impl_->window, text.c_str());
+}
+
+std::string Window::clipboard() const {
+    char const* const text = glfwGetClipboardString(impl_->window);
+    return text == nullptr ? "" : text;
 }
 
 bool Window::is_fullscreen() const {

@@ -85,6 +85,8 @@ public:
     void set_mouse_look(bool looks);
     bool has_mouse_look() const;
     void set_clipboard(std::string const& text);
+    /// The text of the clipboard; empty where it has none.
+    std::string clipboard() const;
     /// GLFW's window, for the overlay's backend.
     GLFWwindow* handle() const;
 

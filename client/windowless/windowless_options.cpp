@@ -15,8 +15,10 @@ namespace {
 ProgramNotes notes() {
     return {
         R"(The camera file is JSON: {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45} stands still
-("up" and "fov_degrees" may be left out); {"keys": [{"time": seconds, "position": ..., "target": ...}, ...]} flies
-smoothly through the keys; {"scene_camera": 0} looks through a camera of the scene.
+("up" and "fov_degrees" may be left out; "orthographic_height", in metres, stands in place of the latter); {"keys":
+[{"time": seconds, "position": ..., "target": ...}, ...]} flies smoothly through the keys; {"scene_camera": 0} looks
+through a camera of the scene. With "scene_time", in seconds, and "paused" it sets the scene's clock at the start, with
+"exposure" the exposure; --seek, --play, --pause and --exposure go before that.
 
 Frames are compressed and written by a thread of their own while batches go on arriving; where it cannot keep up, frames
 are shown later, none is left out. A film (.webp or .mp4) is written when the run is over; of a long one 256 MB of

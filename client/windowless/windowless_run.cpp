@@ -12,6 +12,7 @@
 
 #include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
+#include "client/core/connection/unknown_certificate.h"
 #include "client/core/picture/display_timing.h"
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
@@ -44,8 +45,9 @@ std::optional<CameraPath> read_camera(WindowlessOptions const& options) {
     return options.camera_file.empty() ? std::nullopt : std::optional(read_camera_path(options.camera_file));
 }
 
-void ask_clock(ClientCore& core, WindowlessOptions const& options) {
-    ClockRequest request;
+/// Sets the clock as the camera file says, and as the options say, which go before it.
+void ask_clock(ClientCore& core, WindowlessOptions const& options, std::optional<CameraPath> const& path) {
+    ClockRequest request = path ? path->moment.clock_request() : ClockRequest();
     if (options.play || options.pause) {
         request.set |= ClockRequest::playing;
         request.state.playing = options.play;
@@ -55,7 +57,9 @@ void ask_clock(ClientCore& core, WindowlessOptions const& options) {
         request.state.time = *options.seek;
     }
     if (request.set != 0 && !core.controls()) {
-        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause and --seek do nothing"
+        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause, --seek and what the "
+                     "camera file "
+                     "says of it do nothing"
                   << std::endl;
     }
     if (request.set != 0) {
@@ -210,6 +214,31 @@ void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file)
     write_png(file, contact_sheet(sheet.pairs()));
 }
 
+/// True where somebody at the terminal says that a certificate is to be trusted; false where nobody can be asked.
+bool asks_whether_to_trust(UnknownCertificate const& unknown) {
+    if (::isatty(STDIN_FILENO) != 1 || ::isatty(STDERR_FILENO) != 1) {
+        return false;
+    }
+    std::cerr << "No authority vouches for the certificate of " << unknown.server << ", which is new here.\n"
+              << "Its SHA-256 fingerprint is " << unknown.fingerprint << "\n"
+              << "Is that what the server printed, and is it to be trusted from now on (yes/no)? " << std::flush;
+    std::string answer;
+    return std::getline(std::cin, answer) && answer == "yes";
+}
+
+/// Opens the session. Throws as ClientCore does.
+std::unique_ptr<ClientCore> connect(ConnectionOptions const& connection) {
+    try {
+        return std::make_unique<ClientCore>(connection);
+    } catch (UnknownCertificate const& unknown) {
+        if (!asks_whether_to_trust(unknown)) {
+            throw;
+        }
+        unknown.trust();
+    }
+    return std::make_unique<ClientCore>(connection);
+}
+
 struct Session {
     ClientStatistics statistics;
     RunFigures figures;
@@ -229,19 +258,21 @@ Session look(WindowlessOptions const& options, ConnectionOptions const& connecti
     if (!options.frames_file.empty()) {
         log.emplace(options.frames_file);
     }
-    ClientCore core(connection);
-    if (!core.notice().empty()) {
-        std::cerr << "framelet-client: " << core.notice() << std::endl;
-    }
+    std::unique_ptr<ClientCore> const connected = connect(connection);
+    ClientCore& core = *connected;
     std::size_t const cameras = core.welcome().cameras.size();
     if (path && path->scene_camera >= static_cast<int>(cameras)) {
         throw InputError("the camera file asks for camera " + std::to_string(path->scene_camera) +
                          " of the scene, which has " + std::to_string(cameras) + " (numbered from 0)");
     }
-    core.set_settings(options.display.settings());
+    ViewerSettings settings = options.display.settings();
+    if (path && !options.display.exposure_ev) {
+        settings.exposure_ev = path->moment.exposure_ev.value_or(settings.exposure_ev);
+    }
+    core.set_settings(settings);
     core.set_smoothing(options.display.lag_seconds.value_or(0));
     core.set_drawn_over(options.display.drawn_over);
-    ask_clock(core, options);
+    ask_clock(core, options, path);
     Session session;
     session.figures = show(core, options, path, viewport, sinks, log ? &*log : nullptr, sheet ? &*sheet : nullptr);
     session.statistics = core.statistics();

@@ -54,7 +54,8 @@ framelet_package(viewer framelet-viewer
 framelet-viewer in a window that keeps up with the display however slow the
 link is, framelet-client as pictures and figures."
   DEPENDS libgl1 # looked for when a window is opened
-  SUGGESTS framelet-server # started for a scene file that is opened
+  # The former is started for a scene file that is opened, one of the others asks which.
+  SUGGESTS "framelet-server, zenity | kdialog"
   BUILT_IN ${headers} ${connection} libimgui-dev)
 framelet_package(launcher framelet
   SUMMARY "remote adaptive renderer: view a scene with one command"

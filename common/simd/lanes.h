@@ -106,14 +106,11 @@ inline FloatLanes larger(FloatLanes a, FloatLanes b) {
 }
 #endif
 
+/// The square root, rounded as IEEE 754 has it: estimates differ from processor to processor. No value may be less than
+/// 0.
 #ifdef __AVX512F__
-/// The square root, within 2^-22 of it: one step of Newton's method after the processor's estimate, in a third of the
-/// time. No value may be less than 0.
 inline WideFloats root(WideFloats value) {
-    __mmask16 const is_more = _mm512_cmp_ps_mask(value, _mm512_setzero_ps(), _CMP_GT_OQ);
-    WideFloats const estimate = _mm512_maskz_rsqrt14_ps(is_more, value);
-    WideFloats const out = value * estimate;
-    return out + out * (0.5f - 0.5f * out * estimate);
+    return _mm512_maskz_sqrt_ps(0xffff, value);
 }
 #elif defined(__AVX2__)
 inline WideFloats root(WideFloats value) {

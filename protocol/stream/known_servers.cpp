@@ -7,6 +7,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include "common/error.h"
 #include "protocol/stream/user_folders.h"
 
 namespace framelet {
@@ -66,26 +67,30 @@ CertificateVerdict judge_certificate(std::filesystem::path const& file, std::str
         if (!known) {
             add(file, server, vouched);
         }
-        return {true, ""};
+        return {true, false, ""};
     }
     if (known == fingerprint) {
-        return {true, ""};
+        return {true, false, ""};
     }
     if (known) {
-        return {false, "the certificate of the server at " + server +
-                           " is not the one that it had before: somebody may be between. If you know that it has a new "
-                           "one, with the SHA-256 fingerprint " +
-                           fingerprint + ", remove the line of " + server + " from '" + file.string() + "'"};
+        return {false, false,
+                "the certificate of the server at " + server +
+                    " is not the one that it had before: somebody may be between. If you know that it has a new "
+                    "one, with the SHA-256 fingerprint " +
+                    fingerprint + ", remove the line of " + server + " from '" + file.string() + "'"};
     }
+    return {false, true,
+            "no authority vouches for the certificate of the server at " + server +
+                ", and it is new here. Its SHA-256 fingerprint is " + fingerprint +
+                ": where the server printed the same, trust it where a terminal or framelet-viewer asks, or name the "
+                "certificate with --tls-ca"};
+}
+
+void trust_certificate(std::filesystem::path const& file, std::string const& server, std::string const& fingerprint) {
     if (!add(file, server, fingerprint)) {
-        return {false, "no authority vouches for the certificate of the server at " + server +
-                           ", and there is no file to remember it in ('" + file.string() +
-                           "' cannot be written): name the certificate with --tls-ca"};
+        throw InputError("there is no file to remember the certificate of the server at " + server + " in ('" +
+                         file.string() + "' cannot be written): name the certificate with --tls-ca");
     }
-    return {true, "the certificate of the server at " + server +
-                      " is trusted from now on, though no authority vouches for it: compare its SHA-256 fingerprint "
-                      "with the one that the server printed: " +
-                      fingerprint};
 }
 
 } // namespace framelet

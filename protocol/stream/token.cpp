@@ -3,6 +3,7 @@
 #include <array>
 #include <fstream>
 #include <stdexcept>
+#include <utility>
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
@@ -43,6 +44,22 @@ Ticket make_ticket() {
     return ticket;
 }
 
+std::string token_in(std::string line, std::string const& what) {
+    line.erase(line.find_last_not_of(" \t\r") + 1);
+    line.erase(0, line.find_first_not_of(" \t"));
+    if (line.size() < min_token_bytes) {
+        throw InputError(what + " is shorter than " + std::to_string(min_token_bytes) +
+                         " characters and could be guessed: framelet-server --make-token prints one that cannot");
+    }
+    if (line.size() > max_token_bytes) {
+        throw InputError(what + " is longer than 4096 bytes");
+    }
+    if (!is_one_line(line)) {
+        throw InputError(what + " is not UTF-8 text");
+    }
+    return line;
+}
+
 std::string read_token_file(std::filesystem::path const& file) {
     std::ifstream stream(file, std::ios::binary);
     // A little more than allowed is read, so that a file that never ends (a device) is refused as well.
@@ -53,23 +70,10 @@ std::string read_token_file(std::filesystem::path const& file) {
         throw InputError("token file '" + file.string() + "' cannot be read");
     }
     std::string line = text.substr(0, text.find('\n'));
-    line.erase(line.find_last_not_of(" \t\r") + 1);
-    line.erase(0, line.find_first_not_of(" \t"));
-    if (line.empty()) {
+    if (line.find_first_not_of(" \t\r") == std::string::npos) {
         throw InputError("token file '" + file.string() + "' has an empty first line; put the token there");
     }
-    if (line.size() < min_token_bytes) {
-        throw InputError("token file '" + file.string() + "': the first line is shorter than " +
-                         std::to_string(min_token_bytes) +
-                         " characters and could be guessed: put a line there that framelet-server --make-token prints");
-    }
-    if (line.size() > max_token_bytes) {
-        throw InputError("token file '" + file.string() + "': the first line is longer than 4096 bytes");
-    }
-    if (!is_one_line(line)) {
-        throw InputError("token file '" + file.string() + "': the first line is not UTF-8 text");
-    }
-    return line;
+    return token_in(std::move(line), "token file '" + file.string() + "': the first line");
 }
 
 } // namespace framelet

@@ -23,8 +23,12 @@ Ticket make_ticket();
 /// True when both are the same. Takes a time that depends on their lengths only.
 bool same_token(std::string_view left, std::string_view right);
 
+/// The token in a line: what it has between white space. InputError where that is shorter than `min_token_bytes`,
+/// longer than 4096 bytes or not UTF-8 text; `what` is for its message.
+std::string token_in(std::string line, std::string const& what);
+
 /// Reads a token: the first line of `file` without the white space around it. InputError where the file cannot be read,
-/// or the line is empty, shorter than `min_token_bytes`, longer than 4096 bytes or not UTF-8 text.
+/// or the line is empty or none of `token_in`.
 std::string read_token_file(std::filesystem::path const& file);
 
 } // namespace framelet

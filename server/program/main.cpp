@@ -88,15 +88,15 @@ void print_info(Options const& options) {
     std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
 }
 
-/// Prints how to serve each scene of the folder, a line each. Throws InputError where there is none.
-void list_scenes(std::filesystem::path const& folder) {
+/// Prints how to serve each scene below the folder, a line each. Throws InputError where there is none.
+void list_scenes(std::filesystem::path const& folder, std::string const& command) {
     std::vector<std::filesystem::path> const files = scene_files_in(folder);
     if (files.empty()) {
-        throw InputError("there is no scene file in folder '" + folder.string() +
+        throw InputError("there is no scene file below folder '" + folder.string() +
                          "': name a scene file, or a folder that has some");
     }
     for (std::filesystem::path const& file : files) {
-        std::cout << "framelet-server " << shell_word(file.string()) << '\n';
+        std::cout << command << " " << shell_word(file.string()) << '\n';
     }
 }
 
@@ -243,7 +243,7 @@ int main(int argc, char** argv) {
     framelet::give_way(options.nice); // before there are threads
     try {
         if (framelet::asks_for_list(options)) {
-            framelet::list_scenes(options.scenes.front());
+            framelet::list_scenes(options.scenes.front(), options.list_as);
         } else {
             options.info ? framelet::print_info(options) : framelet::serve(options);
         }

@@ -153,6 +153,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             ->check(readable_by(parse_log_format))
             ->multi_option_policy(CLI::MultiOptionPolicy::TakeLast) // the viewer's PrivateServer has the last word
             ->capture_default_str();
+    // framelet becomes the server with this for a folder: what a line of the list of its scenes begins with.
+    app.add_option("--list-as", options.list_as)->group("")->configurable(false);
     // The viewer's PrivateServer starts the server with this.
     app.add_flag("--progress-lines", options.progress_lines)->group("")->configurable(false);
     app.add_option(

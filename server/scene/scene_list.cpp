@@ -15,9 +15,16 @@ std::vector<std::filesystem::path> scene_files_in(std::filesystem::path const& f
     endings.insert({".gltf", ".glb"});
     std::vector<std::filesystem::path> files;
     std::error_code code;
-    for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    std::filesystem::directory_iterator(folder, code); // that this one may not be read is no reason to pass it over
+    std::filesystem::recursive_directory_iterator entry;
+    if (!code) {
+        entry = {folder, std::filesystem::directory_options::skip_permission_denied, code};
+    }
+    for (std::filesystem::recursive_directory_iterator const end; !code && entry != end; entry.increment(code)) {
         std::error_code unknown; // of what a link leads to
-        if (endings.contains(lower_extension(entry->path())) && entry->is_regular_file(unknown)) {
+        if (entry->path().filename().string().starts_with('.')) {
+            entry.disable_recursion_pending();
+        } else if (endings.contains(lower_extension(entry->path())) && entry->is_regular_file(unknown)) {
             files.push_back(entry->path());
         }
     }

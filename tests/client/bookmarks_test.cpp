@@ -30,11 +30,16 @@ void expect_near(Camera const& a, Camera const& b) {
 TEST(CameraFile, IsReadByThePrograms) {
     Camera camera = some_camera();
     camera.orientation = glm::normalize(camera.orientation * Quat(0.9f, 0, 0, 0.3f)); // rolled
-    CameraPath const path = parse_camera_path(camera_file_text(camera), "test");
+    CameraPath const path = parse_camera_path(camera_file_text(camera, {}), "test");
     ASSERT_EQ(path.keys.size(), 1u);
     expect_near(path.at(0), camera);
+    EXPECT_EQ(path.moment, CameraMoment());
     camera.projection = Projection::orthographic;
-    EXPECT_THROW(camera_file_text(camera), InputError);
+    camera.vertical_extent = 12.5f;
+    CameraMoment const moment{12.25, true, -0.75f};
+    CameraPath const flat = parse_camera_path(camera_file_text(camera, moment), "test");
+    expect_near(flat.at(0), camera);
+    EXPECT_EQ(flat.moment, moment);
 }
 
 TEST(Bookmarks, SurviveARestart) {

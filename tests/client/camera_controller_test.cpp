@@ -171,7 +171,7 @@ TEST_P(CameraControllerOfSize, FocusTurnsToThePointAndGoesHalfOfTheWay) {
     }
 }
 
-TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneAndNoMoreThanThat) {
+TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneWithAMarginAndClearOfTheBar) {
     Stage const stage(GetParam());
     for (Projection const projection : {Projection::perspective, Projection::orthographic}) {
         Camera home = stage.home;
@@ -179,22 +179,52 @@ TEST_P(CameraControllerOfSize, FitShowsAllOfTheSceneAndNoMoreThanThat) {
         CameraController controller(home, stage.scene);
         controller.fly({{1, 1, -1}, {0, 0}, true}, 3);
         for (Viewport const size : {viewport, Viewport{200, 600}}) {
-            controller.fit(size);
-            Camera const& camera = controller.camera();
-            EXPECT_EQ(camera.orientation, home.orientation);
-            float const aspect = static_cast<float>(size.width) / static_cast<float>(size.height);
-            float farthest_out = 0; // 1: the picture's edge
-            for (int i = 0; i < 8; ++i) {
-                Vec3 const side(i & 1, i >> 1 & 1, i >> 2);
-                Vec3 const corner = seen_from(camera, stage.scene.lower + side * stage.scene.size());
-                EXPECT_LT(corner.z, 0);
-                float const edge = projection == Projection::perspective
-                                       ? -corner.z * std::tan(0.5f * camera.vertical_extent)
-                                       : 0.5f * camera.vertical_extent;
-                farthest_out =
-                    std::max({farthest_out, std::abs(corner.y) / edge, std::abs(corner.x) / (edge * aspect)});
+            for (int const bar : {0, 60}) {
+                controller.fit(size, bar);
+                Camera const& camera = controller.camera();
+                EXPECT_EQ(camera.orientation, home.orientation);
+                // Pixels between the scene and the edges.
+                float left = 1e9f, right = 1e9f, above = 1e9f, below = 1e9f;
+                for (int i = 0; i < 8; ++i) {
+                    Vec3 const side(i & 1, i >> 1 & 1, i >> 2);
+                    Vec3 const corner = seen_from(camera, stage.scene.lower + side * stage.scene.size());
+                    EXPECT_LT(corner.z, 0);
+                    float const edge = projection == Projection::perspective
+                                           ? -corner.z * std::tan(0.5f * camera.vertical_extent)
+                                           : 0.5f * camera.vertical_extent;
+                    auto const half = 0.5f * static_cast<float>(size.height);
+                    float const x = 0.5f * static_cast<float>(size.width) + corner.x / edge * half;
+                    float const y = half - corner.y / edge * half;
+                    left = std::min(left, x);
+                    right = std::min(right, static_cast<float>(size.width) - x);
+                    above = std::min(above, y);
+                    below = std::min(below, static_cast<float>(size.height - bar) - y);
+                }
+                float const margin = 0.04f * static_cast<float>(std::min(size.width, size.height));
+                float const tightest = std::min({left, right, above, below});
+                EXPECT_NEAR(tightest, margin, 0.05f * margin) << "and no smaller than that";
+                EXPECT_NEAR(left, right, 0.1f * left);
+                EXPECT_NEAR(above, below, 0.1f * above) << "about in the middle of what is free";
+                EXPECT_LT(glm::distance(controller.pivot(), stage.scene.center()), 1e-3f * GetParam());
             }
-            EXPECT_NEAR(farthest_out, 1, 1e-3f);
+        }
+    }
+}
+
+TEST(CameraController, WhatIsFlatOrAWindowOfNearlyNothingIsFittedToo) {
+    Bounds flat;
+    flat.include({-1, 0, -1});
+    flat.include({1, 0, 1});
+    for (Vec3 const forward : {Vec3(0, 0, -1), Vec3(0, -1, 0), Vec3(0, 1, 0)}) {
+        for (Viewport const size : {viewport, Viewport{30, 20}, Viewport{1, 1}, Viewport{2000, 1}}) {
+            CameraController controller(Camera{}, flat);
+            for (int i = 0; i < 2; ++i) {
+                controller.look_along(forward, {0, 0, -1});
+                controller.fit(size, 34);
+                EXPECT_TRUE(is_valid(controller.camera()));
+                EXPECT_LT(seen_from(controller.camera(), {1, 0, 1}).z, 0);
+                controller.toggle_projection();
+            }
         }
     }
 }

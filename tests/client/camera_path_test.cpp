@@ -91,6 +91,30 @@ TEST(CameraPath, ACameraOfTheScene) {
     EXPECT_EQ(parse_camera_path(R"({"scene_camera": 2})", "test").scene_camera, 2);
 }
 
+TEST(CameraPath, AnyMayBeOfAMoment) {
+    for (std::string const camera : {R"("position":[1,2,3],"target":[0,0,0])", R"("scene_camera":0)",
+                                     R"("keys":[{"time":1,"position":[1,2,3],"target":[0,0,0]}])"}) {
+        CameraMoment const bare = parse_camera_path("{" + camera + "}", "test").moment;
+        EXPECT_EQ(bare, CameraMoment()) << camera;
+        EXPECT_EQ(bare.clock_request().set, 0);
+        CameraMoment const moment =
+            parse_camera_path("{" + camera + R"(,"scene_time":12.5,"paused":true,"exposure":-1.5})", "test").moment;
+        EXPECT_EQ(moment, (CameraMoment{12.5, true, -1.5f})) << camera;
+        ClockRequest const request = moment.clock_request();
+        EXPECT_EQ(request.set, ClockRequest::time | ClockRequest::playing);
+        EXPECT_EQ(request.state.time, 12.5);
+        EXPECT_FALSE(request.state.playing);
+    }
+    EXPECT_TRUE(CameraMoment{.paused = false}.clock_request().state.playing);
+}
+
+TEST(CameraPath, AnOrthographicCameraStandsStill) {
+    Camera const camera =
+        parse_camera_path(R"({"position":[1,2,3],"target":[0,0,0],"orthographic_height":2.5})", "test").at(7);
+    EXPECT_EQ(camera.projection, Projection::orthographic);
+    EXPECT_EQ(camera.vertical_extent, 2.5f);
+}
+
 TEST(CameraPath, CurvesThatCrossStillGiveACamera) {
     CameraPath const path = parse_camera_path(R"({"keys":[
         {"time":0,"position":[0,0,1],"target":[0,0,-1]},{"time":1,"position":[0,0,-1],"target":[0,0,1]}]})",
@@ -116,6 +140,14 @@ TEST(CameraPath, BadContentGetsOneLineThatNamesTheFile) {
         R"({"position":[1,2,3],"target":[0,0,0],"fov_degrees":180})",
         R"({"position":[1,2,3],"target":[0,0,0],"fov_degrees":"wide"})",
         R"({"position":[1,2,3],"target":[0,0,0],"colour":1})",
+        R"({"position":[1,2,3],"target":[0,0,0],"orthographic_height":0})",
+        R"({"position":[1,2,3],"target":[0,0,0],"orthographic_height":1,"fov_degrees":45})",
+        R"({"keys":[{"time":1,"position":[1,2,3],"target":[0,0,0],"orthographic_height":1}]})",
+        R"({"position":[1,2,3],"target":[0,0,0],"scene_time":-1})",
+        R"({"position":[1,2,3],"target":[0,0,0],"paused":1})",
+        R"({"position":[1,2,3],"target":[0,0,0],"exposure":"bright"})",
+        R"({"keys":[{"time":1,"position":[1,2,3],"target":[0,0,0],"scene_time":1}]})",
+        R"({"scene_time":1})",
         R"({"scene_camera":-1})",
         R"({"scene_camera":1.5})",
         R"({"scene_camera":0,"position":[1,2,3]})",

@@ -169,6 +169,7 @@ TEST(ClientCore, IsCompleteWhenTheNewestViewHasConvergedAndAllHasCome) {
     server.send(Message(status));
     ASSERT_TRUE(wait_for(core, [&] { return core.status().converged; }));
     EXPECT_FALSE(core.is_complete()) << "batch 2 is still missing";
+    EXPECT_FALSE(core.statistics().converged) << "nor is that counted as it";
     server.send(constant_batch(plane, plane.pixel_depth(), 2, 1));
     EXPECT_TRUE(wait_for(core, [&] { return core.is_complete(); }));
     Camera other;

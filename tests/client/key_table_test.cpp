@@ -22,12 +22,12 @@ TEST(KeyTable, NoKeyMeansTwoThings) {
 }
 
 TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
-    TextRows const help = help_rows("");
+    TextRows help;
+    for (HelpGroup const& group : help_groups("")) {
+        help.insert(help.end(), group.rows.begin(), group.rows.end());
+    }
     for (int i = 0; i <= static_cast<int>(numbered(Command::bookmark, numbered_cameras - 1)); ++i) {
         auto const command = static_cast<Command>(i);
-        if (command == Command::quit) { // the window's own button, beside Esc
-            continue;
-        }
         std::string const keys = key_names(command);
         EXPECT_FALSE(keys.empty()) << i;
         if (command >= Command::scene_camera || command == Command::reconnect) {
@@ -43,6 +43,38 @@ TEST(KeyTable, TheHelpNamesEveryOverlay) {
     }
 }
 
+TEST(HelpText, WhatOneNeedsFirstComesFirst) {
+    std::vector<HelpGroup> const groups = help_groups("");
+    std::string first;
+    for (auto const& [keys, text] : groups.front().rows) {
+        first += keys + "\n";
+    }
+    for (std::string const& keys : {std::string("left drag"), std::string("wheel"), key_names(Command::fit_scene),
+                                    key_names(Command::toggle_help), key_names(Command::quit)}) {
+        EXPECT_NE(first.find(keys), std::string::npos) << keys;
+    }
+    for (HelpGroup const& group : groups) {
+        EXPECT_FALSE(group.title.empty());
+        EXPECT_FALSE(group.rows.empty()) << group.title;
+    }
+}
+
+TEST(HelpText, TwoColumnsAreAboutAsHigh) {
+    auto const of = [](std::vector<std::size_t> const& sizes) {
+        std::vector<HelpGroup> out;
+        for (std::size_t const size : sizes) {
+            out.push_back({"title", TextRows(size)});
+        }
+        return left_groups(out);
+    };
+    EXPECT_EQ(of({}), 0u);
+    EXPECT_EQ(of({3}), 1u);
+    EXPECT_EQ(of({3, 3}), 1u);
+    EXPECT_EQ(of({3, 4}), 1u);
+    EXPECT_EQ(of({1, 1, 5}), 2u);
+    EXPECT_EQ(of({5, 1, 1, 1}), 1u);
+}
+
 TEST(KeyTable, ShiftCountsWhereItMeansSomething) {
     EXPECT_EQ(command_of_key(GLFW_KEY_B, {}, false), Command::add_bookmark);
     EXPECT_EQ(command_of_key(GLFW_KEY_B, {.shift = true}, false), Command::remove_bookmark);
@@ -51,6 +83,8 @@ TEST(KeyTable, ShiftCountsWhereItMeansSomething) {
     EXPECT_EQ(command_of_key(GLFW_KEY_3, {.shift = true}, false), numbered(Command::bookmark, 2));
     EXPECT_EQ(command_of_key(GLFW_KEY_ENTER, {.alt = true}, false), Command::toggle_fullscreen);
     EXPECT_EQ(command_of_key(GLFW_KEY_R, {.control = true}, false), std::nullopt);
+    EXPECT_EQ(command_of_key(GLFW_KEY_Q, {.control = true}, false), Command::quit);
+    EXPECT_EQ(command_of_key(GLFW_KEY_Q, {}, false), std::nullopt) << "it flies";
     EXPECT_EQ(command_of_key(GLFW_KEY_F12 + 1, {}, false), std::nullopt);
 }
 
@@ -65,7 +99,7 @@ TEST(KeyTable, NamesAreThoseOnTheKeyboard) {
     EXPECT_EQ(key_names(Command::faster), "+");
     EXPECT_EQ(key_names(Command::view_front), "Num 1");
     EXPECT_EQ(with_keys("record", Command::toggle_recording), "record (F9)");
-    EXPECT_EQ(with_keys("close", Command::quit), "close");
+    EXPECT_EQ(with_keys("close", Command::quit), "close (Ctrl+Q)");
 }
 
 } // namespace

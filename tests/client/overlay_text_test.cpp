@@ -64,25 +64,37 @@ TEST(OverlayText, TheSignSaysThatAConnectionIsTriedForAgain) {
 }
 
 TEST(OverlayText, ClockAndStatisticsReadWell) {
-    EXPECT_EQ(clock_text({12.345, true, 2}), "12.35 s, playing at 2x");
-    EXPECT_EQ(clock_text({0, false, 0.5f}), "0.00 s, paused at 0.5x");
+    EXPECT_EQ(clock_text({{12.345, true, 2}, 5}), "2.35 of 5.00 s, playing at 2x") << "as the bar has it";
+    EXPECT_EQ(clock_text({{0, false, 0.5f}, 5}), "0.00 of 5.00 s, paused at 0.5x");
+    EXPECT_EQ(clock_text({{3, true, 1}, 5}), "3.00 of 5.00 s, playing");
+    EXPECT_EQ(clock_text({{3, true, 1}, 0}), "nothing moves in this scene");
     ClientStatistics statistics;
     statistics.samples = 1000;
     statistics.bytes = 250;
     statistics.batches = 1;
-    TextRows const rows = figure_rows(statistics, {}, true);
-    EXPECT_EQ(value_of(rows, "done"), "0% of the picture");
-    EXPECT_EQ(value_of(rows, "clock"), "0.00 s, paused at 1x");
+    TimeLine const time{{}, 4};
+    TextRows const rows = figure_rows(statistics, time, true);
+    EXPECT_EQ(value_of(rows, "done"), "coarse, 0% known");
+    EXPECT_EQ(value_of(rows, "clock"), "0.00 of 4.00 s, paused");
     TextRows const details = detail_rows(statistics, RateMeter(), {640, 360}, "processor");
     EXPECT_EQ(value_of(details, "picture"), "640x360");
     EXPECT_EQ(value_of(details, "received"), "1 batch, 0 framelets, 0.25 B/sample");
     EXPECT_EQ(value_of(details, "round trip"), "not measured");
     statistics.lag_seconds = 0.1;
     statistics.coverage = 1;
+    statistics.is_fine = true;
+    EXPECT_EQ(value_of(figure_rows(statistics, time, true), "done"), "refining, 100% known");
     statistics.converged = true;
-    TextRows const late = figure_rows(statistics, {}, true);
-    EXPECT_EQ(value_of(late, "clock"), "0.00 s, paused at 1x; the scene 100 ms late");
-    EXPECT_EQ(value_of(late, "done"), "100% of the picture, as good as it gets");
+    TextRows const late = figure_rows(statistics, time, true);
+    EXPECT_EQ(value_of(late, "clock"), "0.00 of 4.00 s, paused; the scene 100 ms late");
+    EXPECT_EQ(value_of(late, "done"), "finished");
+}
+
+TEST(OverlayText, SaysThatASavedPictureWasNotFinished) {
+    EXPECT_EQ(saved_text("a.png", "", PictureState::finished), "saved a.png");
+    EXPECT_EQ(saved_text("a.png", "", PictureState::coarse), "saved a.png; it was not finished: still coarse");
+    EXPECT_EQ(saved_text("a.exr", ", without depth", PictureState::refining),
+              "saved a.exr, without depth; it was not finished: still refining");
 }
 
 TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {

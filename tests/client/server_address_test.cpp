@@ -29,6 +29,25 @@ TEST(ServerAddress, IsTakenOutOfAUrl) {
     EXPECT_EQ(parse_server_address("https://[::1]:80/"), (ServerAddress{"::1", 80}));
 }
 
+TEST(ServerAddress, AUrlMaySayThatItIsEncrypted) {
+    for (char const* const text : {"tls://host:80", "https://host:80/", " tls://host:80"}) {
+        EXPECT_TRUE(asks_for_tls(text)) << text;
+        EXPECT_EQ(parse_server_address(text), (ServerAddress{"host", 80})) << text;
+        EXPECT_EQ(with_tls(text, true), text);
+        EXPECT_EQ(with_tls(text, false), "host:80");
+    }
+    for (char const* const text : {"host:80", "http://host:80", "tls", "https:80", "a.tls://host", ""}) {
+        EXPECT_FALSE(asks_for_tls(text)) << text;
+        EXPECT_EQ(with_tls(text, false), text);
+    }
+    EXPECT_EQ(with_tls("http://host:80/", true), "tls://host:80");
+    ConnectionOptions options;
+    options.server = {"::1", 80};
+    EXPECT_EQ(options.server_name(), "[::1]:80");
+    options.tls = true;
+    EXPECT_EQ(options.server_name(), "tls://[::1]:80");
+}
+
 TEST(ServerAddress, AnythingElseIsRefused) {
     for (char const* const text :
          {"", ":", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1", "a b:7070", "::1:7070", "[::1",

@@ -39,7 +39,7 @@ TEST(StatisticsText, WhatPeopleAskForStandsBeforeTheDetails) {
     run.photon_seconds = 0.042;
     std::string const text = statistics_summary(statistics, run);
     std::string const people = text.substr(0, text.find("\ndetails\n"));
-    for (char const* const part : {"30.0 a second", "4.0 Mbit/s", "42 ms", "50.0% of the picture, not yet"}) {
+    for (char const* const part : {"30.0 a second", "4.0 Mbit/s", "42 ms", "50.0% of the picture known, coarse"}) {
         EXPECT_NE(people.find(part), std::string::npos) << part << " in\n" << text;
     }
     EXPECT_EQ(people.find("ns/"), std::string::npos) << text;

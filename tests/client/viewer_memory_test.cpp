@@ -17,13 +17,13 @@ TEST(ViewerMemory, IsTheSameInTheNextRun) {
     EXPECT_EQ(read_viewer_memory(), ViewerMemory());
     ViewerMemory memory{Viewport{1000, 600}, true, true, true, false, {}};
     memory.note_server("render.example:7070");
-    memory.note_server("[::1]:80");
+    memory.note_server("tls://[::1]:80");
     memory.bias = -0.25f;
     memory.lag_seconds = 0.1;
     memory.fly_speed = 1 / CameraController::most_speed_factor;
     write_viewer_memory(memory);
     EXPECT_EQ(read_viewer_memory(), memory);
-    EXPECT_EQ(memory.servers.front(), "[::1]:80");
+    EXPECT_EQ(memory.servers.front(), "tls://[::1]:80");
     std::ofstream(folder.path() / "framelet" / "viewer.json") << "{";
     EXPECT_EQ(read_viewer_memory(), ViewerMemory());
 }

@@ -34,9 +34,9 @@ protected:
         }
         return holds();
     }
-    /// Closes the window by Esc; the exit code.
+    /// Closes the window by its key; the exit code.
     int close() {
-        input({"key", "--delay", "200", "Escape"});
+        input({"key", "--delay", "200", "ctrl+q"});
         return program_->wait(patience);
     }
 };
@@ -92,12 +92,52 @@ TEST_F(StartPanelTest, ARefusalIsToldAndAnotherServerTyped) {
     EXPECT_TRUE(has(program_->errors(), "token")) << program_->errors();
 }
 
+TEST_F(StartPanelTest, ACertificateThatNobodyVouchesForIsAskedAbout) {
+    std::string const key = (folder_.path() / "key.pem").string(), certificate = (folder_.path() / "cert.pem").string();
+    Process openssl("/usr/bin/openssl",
+                    {"req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-keyout", key, "-out", certificate,
+                     "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"});
+    ASSERT_EQ(openssl.wait(patience), 0) << openssl.errors();
+    ServerProcess server(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
+    std::filesystem::path const known = folder_.path() / "framelet" / "known_servers";
+    start_viewer({server.address(), "--tls"});
+    ASSERT_TRUE(eventually([&] { return has(program_->errors(), "no authority vouches"); })) << program_->errors();
+    EXPECT_FALSE(has(content_of(known), server.address())) << "nobody has said so yet";
+    EXPECT_FALSE(has(server.process().errors(), "connects")) << "nothing has been sent";
+    // The answers are below the text; the right one says yes.
+    auto const connects = [&] { return has(server.process().errors(), " connects"); };
+    for (int y = screen_height / 2; y < screen_height && !connects(); y += 6) {
+        click(250, y);
+    }
+    EXPECT_TRUE(eventually(connects)) << program_->errors();
+    EXPECT_TRUE(has(content_of(known), server.address()));
+    EXPECT_EQ(close(), 0) << program_->errors();
+    start_viewer({server.address(), "--tls"});
+    EXPECT_TRUE(eventually([&] {
+        std::string const log = server.process().errors();
+        return log.find(" connects") != log.rfind(" connects");
+    }));
+    EXPECT_EQ(program_->errors(), "") << "it is known by now";
+}
+
 TEST_F(StartPanelTest, ClosingItIsFine) {
     start_viewer({});
     EXPECT_EQ(close(), 0) << program_->errors();
     EXPECT_TRUE(has(memory(), "640")) << memory();
     start_viewer({nobody});
     EXPECT_EQ(close(), 0) << program_->errors();
+}
+
+TEST_F(StartPanelTest, EscapeAsksOnceWhetherToQuit) {
+    start_viewer({nobody});
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(std::chrono::seconds(2));
+    EXPECT_TRUE(program_->running()) << program_->errors();
+    EXPECT_TRUE(eventually([&] { // a key may come late, in a machine with much to do
+        input({"key", "--delay", "300", "Escape", "Escape"});
+        return !program_->running();
+    }));
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
 }
 
 TEST_F(StartPanelTest, ASignalEndsItAndTheSettingsAreKept) {

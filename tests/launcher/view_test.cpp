@@ -44,12 +44,12 @@ private:
 TEST(View, BecomesTheViewerAndHandsOnWhatIsAsked) {
     Programs const programs("exit 7");
     Process view(programs.framelet(),
-                 {"view", scene_file, "other.glb", "--size", "320x200", "--allow-outside", "--threads", "1",
-                  "--viewer-config=a.toml", "--server-config=b.toml", "--", "--quiet", "--exposure=1"});
+                 {"view", scene_file, "other.glb", "--size", "320x200", "--allow-outside", "--threads", "1", "--camera",
+                  "c.json", "--viewer-config=a.toml", "--server-config=b.toml", "--", "--quiet", "--exposure=1"});
     EXPECT_EQ(view.wait(patience), 7) << view.errors();
     EXPECT_EQ(view.errors(), "");
     EXPECT_EQ(programs.arguments(),
-              "--size=320x200\n--config=a.toml\n--open=" + scene_file +
+              "--size=320x200\n--camera=c.json\n--config=a.toml\n--open=" + scene_file +
                   "\n--open=other.glb\n--needs-scene\n--server-option=--allow-outside\n--server-option=--threads=1\n"
                   "--server-option=--config=b.toml\n--server-option=--quiet\n"
                   "--server-option=--exposure=1\n");
@@ -79,6 +79,19 @@ TEST(View, ACommandLineOfNoUseIsOneLineAndAnExitCode) {
     std::filesystem::remove(programs.viewer());
     ::setenv("PATH", "/nonexistent", 1);
     expect_line(programs.framelet(), {{"view", scene_file}, 1, "framelet: cannot find framelet-viewer"});
+}
+
+TEST(View, OfAFolderListsTheScenesInItAndBelow) {
+    TemporaryFolder const folder;
+    std::filesystem::create_directory(folder.path() / "below");
+    std::string const below = folder.write("below/car.glb", "");
+    std::string const here = folder.write("my house.obj", "");
+    Process list(FRAMELET_LAUNCHER, {"view", folder.path().string()});
+    EXPECT_EQ(list.wait(patience), 0) << list.errors();
+    EXPECT_EQ(list.output(), "framelet view " + below + "\nframelet view '" + here + "'\n");
+    EXPECT_EQ(list.errors(), "");
+    TemporaryFolder const empty;
+    expect_line(FRAMELET_LAUNCHER, {{"view", empty.path().string()}, 1, "no scene file"});
 }
 
 TEST(View, SaysThatThereIsNoDisplay) {
@@ -113,7 +126,7 @@ TEST_F(ViewTest, EndsWithItsWindow) {
     view();
     pid_t const served_by = server();
     EXPECT_TRUE(eventually([&] { // a key may come before the window has them
-        input({"key", "Escape"});
+        input({"key", "ctrl+q"});
         return !program_->running();
     }));
     EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
@@ -143,7 +156,7 @@ TEST_F(ViewTest, SaysWhereTheServerHasGoneAndStartsAnother) {
         std::string const said = program_->errors();
         return said.find("Killed") != said.rfind("Killed");
     }));
-    input({"key", "--delay", "200", "Escape"});
+    input({"key", "--delay", "200", "ctrl+q"});
     EXPECT_EQ(program_->wait(patience), 1) << program_->errors();
 }
 

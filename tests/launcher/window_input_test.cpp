@@ -191,7 +191,7 @@ TEST_F(WindowInputTest, WhatWasSetByHandIsThereTheNextTime) {
         newest_camera(); // the window hears keys
         press("bracketright");
         press("l");
-        input({"key", "Escape"});
+        input({"key", "ctrl+q"});
         EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
         Kept out;
         fs::path const folder = folder_.path() / "framelet";

@@ -31,7 +31,9 @@ TEST_F(WindowTest, TheKeypadLooksAlongAxes) {
         std::string key;
         std::array<double, 3> axis;
     };
-    for (View const& view : {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}}) {
+    for (View const& view :
+         {View{"KP_3", {-1, 0, 0}}, View{"KP_7", {0, -1, 0}}, View{"KP_1", {0, 0, -1}}, View{"ctrl+KP_3", {1, 0, 0}},
+          View{"ctrl+KP_7", {0, 1, 0}}, View{"ctrl+KP_1", {0, 0, 1}}}) {
         EXPECT_TRUE(eventually([&] {
             press(view.key);
             press("shift+c");
@@ -89,6 +91,52 @@ TEST_F(WindowTest, TheMouseLooksAroundUntilEscapeEndsThat) {
     nlohmann::json const still = newest_camera(); // after Escape, and the window is still there
     move_mouse(-50, 0);
     EXPECT_EQ(newest_camera(), still);
+}
+
+TEST_F(WindowTest, EscapeLeavesTheFullScreenAndAsksOnceWhetherToQuit) {
+    newest_camera(); // the window hears keys
+    press("F11");
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(2s);
+    input({"key", "Escape"});
+    std::this_thread::sleep_for(2s);
+    newest_camera(); // it is still there
+    EXPECT_TRUE(eventually([&] {
+        input({"key", "--delay", "300", "Escape", "Escape"});
+        return !program_->running();
+    }));
+    EXPECT_EQ(program_->wait(patience), 0) << program_->errors();
+    EXPECT_FALSE(nlohmann::json::parse(memory()).at("fullscreen").get<bool>());
+}
+
+TEST_F(WindowTest, GoesToTheViewThatWasCopiedAndToThatOfTheCommandLine) {
+    auto const is_at = [](nlohmann::json const& camera, nlohmann::json const& wanted) {
+        for (char const* const part : {"position", "target"}) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                if (std::abs(camera[part][i].get<double>() - wanted[part][i].get<double>()) > 1e-3) {
+                    return false;
+                }
+            }
+        }
+        return camera["exposure"] == wanted["exposure"] && camera["scene_time"] == wanted["scene_time"];
+    };
+    nlohmann::json const copied = newest_camera();
+    EXPECT_TRUE(copied.at("paused").get<bool>());
+    press("c");
+    EXPECT_TRUE(eventually([&] {
+        press("KP_7");
+        press("bracketright");
+        return !is_at(newest_camera(), copied);
+    }));
+    EXPECT_TRUE(eventually([&] {
+        press("v");
+        return is_at(newest_camera(), copied);
+    }));
+    nlohmann::json const given{
+        {"position", {1, 20, 3}}, {"target", {1, 19, 3}}, {"up", {0, 0, -1}}, {"scene_time", 1.25}, {"exposure", 0.5}};
+    std::string const file = folder_.write("given.json", given.dump());
+    start(FRAMELET_VIEWER, {server_->address(), "--size", "320x200", "--camera", file});
+    EXPECT_TRUE(eventually([&] { return is_at(newest_camera(), given); }));
 }
 
 TEST_F(WindowTest, KeepsBookmarksForTheSceneFile) {

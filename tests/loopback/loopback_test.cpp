@@ -344,32 +344,56 @@ TEST(Loopback, TlsProtectsAndIsChecked) {
     EXPECT_EQ(connect({}), 1) << "plain text is not served";
 }
 
-TEST(Loopback, ACertificateThatNobodyVouchesForIsTrustedUntilItChanges) {
+TEST(Loopback, ACertificateThatNobodyVouchesForIsAskedAboutAndTrustedUntilItChanges) {
     TemporaryFolder folder;
     ASSERT_EQ(::setenv("XDG_STATE_HOME", folder.path().c_str(), 1), 0); // what is remembered goes with the test
     auto const [certificate, key] = make_certificate(folder, "first");
     auto const [other_certificate, other_key] = make_certificate(folder, "other");
+    std::string const token = folder.write("token", "0123456789abcdef0123456789abcdef\n");
     std::string address;
+    auto const options = [&] {
+        return std::vector<std::string>{address,      "--tls", "--token-file",     token, "--size", "64x64",
+                                        "--duration", "60",    "--until-converged"};
+    };
     auto const connect = [&] {
-        Process client(FRAMELET_CLIENT, {address, "--tls", "--size", "64x64", "--duration", "60", "--until-converged"});
+        Process client(FRAMELET_CLIENT, options());
         int const code = client.wait(patience);
         return std::pair{code, client.errors()};
     };
+    auto const answer = [&](std::string const& word) { // at a terminal
+        std::string command = FRAMELET_CLIENT;
+        for (std::string const& option : options()) {
+            command += " '" + option + "'";
+        }
+        Process client("/bin/sh", {"-c", "echo " + word + " | script -qec \"$0\" /dev/null", command});
+        int const code = client.wait(patience);
+        return std::pair{code, client.output()};
+    };
     {
-        ServerProcess server(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
+        ServerProcess server(scene_file,
+                             {"--tls-cert", certificate, "--tls-key", key, "--token-file", token, "--paused"});
         address = server.address();
-        auto const [code, warning] = connect();
-        EXPECT_EQ(code, 0) << warning;
         std::string const mark = "certificate SHA-256 ";
         std::string const printed = server.process().output();
         std::size_t const start = printed.find(mark);
         ASSERT_NE(start, std::string::npos) << printed;
-        EXPECT_NE(warning.find(printed.substr(start + mark.size(), 95)), std::string::npos) << warning;
+        std::string const fingerprint = printed.substr(start + mark.size(), 95);
+        auto const [code, refusal] = connect();
+        EXPECT_EQ(code, 1) << "nobody can be asked";
+        EXPECT_NE(refusal.find(fingerprint), std::string::npos) << refusal;
+        EXPECT_EQ(std::count(refusal.begin(), refusal.end(), '\n'), 1) << refusal;
+        auto const [denied, question] = answer("no");
+        EXPECT_EQ(denied, 1) << question;
+        EXPECT_NE(question.find(fingerprint), std::string::npos) << question;
+        EXPECT_EQ(connect().first, 1) << "it is not trusted yet";
+        EXPECT_EQ(server.process().errors().find("viewer 1 connects"), std::string::npos) << "nor has a token gone";
+        auto const [granted, told] = answer("yes");
+        EXPECT_EQ(granted, 0) << told;
         EXPECT_EQ(connect(), std::pair(0, std::string())) << "it is known by now";
     }
     ServerProcess const impostor = ServerProcess::of_program(
         FRAMELET_SERVER, {scene_file, "--port", address.substr(address.rfind(':') + 1), "--tls-cert", other_certificate,
-                          "--tls-key", other_key, "--paused"});
+                          "--tls-key", other_key, "--token-file", token, "--paused"});
     auto const [code, errors] = connect();
     EXPECT_EQ(code, 1);
     EXPECT_NE(errors.find("known_servers"), std::string::npos) << errors;

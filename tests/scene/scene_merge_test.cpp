@@ -207,14 +207,19 @@ TEST(SceneList, HasTheFilesThatAreRead) {
     }
     fs::create_directories(folder.path() / "below.glb");
     folder.write("below.glb/c.glb", "");
+    fs::create_directories(folder.path() / "B" / "deep");
+    folder.write("B/deep/d.glb", "");
+    fs::create_directories(folder.path() / ".hidden");
+    folder.write(".hidden/e.glb", "");
+    fs::create_directory_symlink(folder.path(), folder.path() / "B" / "loop");
     fs::create_symlink(folder.path() / "b.glb", folder.path() / "link.glb");
     fs::create_symlink(folder.path() / "nowhere", folder.path() / "broken.glb");
     std::vector<std::string> names;
     for (fs::path const& file : scene_files_in(folder.path())) {
-        EXPECT_EQ(file.parent_path(), folder.path());
-        names.push_back(file.filename());
+        names.push_back(file.lexically_relative(folder.path()));
     }
-    EXPECT_EQ(names, (std::vector<std::string>{"Car.OBJ", "a.gltf", "b.glb", "link.glb"}));
+    EXPECT_EQ(names,
+              (std::vector<std::string>{"B/deep/d.glb", "Car.OBJ", "a.gltf", "b.glb", "below.glb/c.glb", "link.glb"}));
     EXPECT_THROW(scene_files_in(folder.path() / "absent"), InputError);
 }
 

@@ -24,6 +24,12 @@ constexpr float room_size = 30;
 /// from farther away, and arithmetic stays finite.
 constexpr float farthest = 1e9f;
 constexpr float largest_scene = 1e7f;
+/// Room around a scene that is fitted into the picture, in halves of the picture's shorter side.
+constexpr float fit_margin = 0.08f;
+/// Most of the picture's height that counts as covered then, in halves of it: a small window has little else.
+constexpr float most_covered = 1.5f;
+/// Least distance from the scene then, and least height of an orthographic picture, in its diagonals.
+constexpr float least_fit_distance = 0.05f;
 
 float diagonal(Bounds const& scene) {
     float const length = scene.empty() ? 0 : glm::length(scene.size());
@@ -140,27 +146,46 @@ void CameraController::toggle_projection() {
     go_to(center - camera_.orientation * pivot_);
 }
 
-void CameraController::fit(Viewport viewport) {
+void CameraController::fit(Viewport viewport, int covered_below) {
     if (scene_.empty() || size_ >= largest_scene) {
         return;
     }
-    float const aspect = static_cast<float>(viewport.width) / static_cast<float>(viewport.height);
+    // The part of the picture that is free, in halves of its height from the middle, x right, y up.
+    auto const height = static_cast<float>(viewport.height);
+    float const aspect = static_cast<float>(viewport.width) / height;
+    float const margin = fit_margin * std::min(aspect, 1.0f);
+    float const right = aspect - margin;
+    float const top = 1 - margin;
+    float const bottom = -1 + std::min(2 * static_cast<float>(covered_below) / height, most_covered) + margin;
     bool const is_perspective = camera_.projection == Projection::perspective;
+    // The planes through its edges are moved inwards until each touches the scene: each bounds where the camera may be,
+    // in camera space about the scene's centre. An orthographic camera's are parallel.
     float const slope = is_perspective ? std::tan(0.5f * camera_.vertical_extent) : 0;
-    float distance = 0; // from the scene's centre, such that every corner is within the picture; metres
-    float height = 0; // of an orthographic picture that has every corner in it; metres
+    Vec3 most(-INFINITY);
+    float to_right = -INFINITY, to_left = INFINITY, above = -INFINITY, below = INFINITY;
     for (int i = 0; i < 8; ++i) {
         Vec3 const side = Vec3(i & 1, i >> 1 & 1, i >> 2) - 0.5f;
         Vec3 const corner = glm::conjugate(camera_.orientation) * (side * scene_.size());
-        float const half = std::max(std::abs(corner.x) / aspect, std::abs(corner.y));
-        distance = std::max(distance, corner.z + (is_perspective ? half / slope : size_));
-        height = std::max(height, 2 * half);
+        most = glm::max(most, corner);
+        to_right = std::max(to_right, corner.x + right * slope * corner.z);
+        to_left = std::min(to_left, corner.x - right * slope * corner.z);
+        above = std::max(above, corner.y + top * slope * corner.z);
+        below = std::min(below, corner.y + bottom * slope * corner.z);
     }
-    if (!is_perspective) {
-        camera_.vertical_extent = height;
+    Vec3 eye(0);
+    if (is_perspective) {
+        eye.z = std::max({(to_right - to_left) / (2 * right * slope), (above - below) / ((top - bottom) * slope),
+                          most.z + least_fit_distance * size_});
+        eye.x = 0.5f * (to_right + to_left);
+        eye.y = 0.5f * (above + below - (top + bottom) * slope * eye.z);
+    } else {
+        camera_.vertical_extent =
+            std::max({(to_right - to_left) / right, 2 * (above - below) / (top - bottom), least_fit_distance * size_});
+        eye.z = most.z + size_;
+        eye.y = -0.25f * (top + bottom) * camera_.vertical_extent;
     }
-    pivot_ = Vec3(0, 0, -distance);
-    go_to(scene_.center() - camera_.orientation * pivot_);
+    pivot_ = -eye;
+    go_to(scene_.center() + camera_.orientation * eye);
 }
 
 float CameraController::fly_speed() const {

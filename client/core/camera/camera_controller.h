@@ -32,8 +32,9 @@ public:
     void set_pivot(Vec3 point);
     /// Turns to a point, goes half of the way there, and has it for its pivot. World up becomes up.
     void focus(Vec3 point);
-    /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction.
-    void fit(Viewport viewport);
+    /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction, with a margin.
+    /// `covered_below`: pixels at the lower edge that something else lies over, of which it stays clear.
+    void fit(Viewport viewport, int covered_below = 0);
 
     /// Turns around the pivot, which comes into the middle of the picture, until it looks along this axis of the world.
     void look_along(Vec3 forward, Vec3 up);

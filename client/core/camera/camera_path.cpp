@@ -68,7 +68,7 @@ struct Reader {
     }
 
     CameraKey key(Json const& object) const {
-        only_fields(object, {"time", "position", "target", "up", "fov_degrees"});
+        only_fields(object, {"time", "position", "target", "up", "fov_degrees", "orthographic_height"});
         CameraKey out;
         out.position = vector(required(object, "position"), "position");
         out.target = vector(required(object, "target"), "target");
@@ -78,6 +78,13 @@ struct Reader {
         if (object.contains("fov_degrees")) {
             out.vertical_fov =
                 static_cast<float>(number(object["fov_degrees"], "fov_degrees", 0.1, 175) * std::numbers::pi / 180);
+        }
+        if (object.contains("orthographic_height")) {
+            if (object.contains("fov_degrees")) {
+                fail("there is \"fov_degrees\" or \"orthographic_height\", not both");
+            }
+            out.orthographic_height = static_cast<float>(number(object["orthographic_height"], "orthographic_height",
+                                                                double{least_view_height}, double{most_view_height}));
         }
         if (object.contains("time")) {
             out.time = number(object["time"], "time", 0, 1e6);
@@ -93,6 +100,36 @@ struct Reader {
     }
 };
 
+/// Takes the moment out of a document.
+CameraMoment take_moment(Reader const& reader, Json& document) {
+    CameraMoment out;
+    if (document.contains("scene_time")) {
+        out.scene_time = reader.number(document["scene_time"], "scene_time", 0, max_scene_time);
+    }
+    if (document.contains("paused")) {
+        if (!document["paused"].is_boolean()) {
+            reader.fail("\"paused\" must be true or false");
+        }
+        out.paused = document["paused"].get<bool>();
+    }
+    if (document.contains("exposure")) {
+        out.exposure_ev = static_cast<float>(reader.number(document["exposure"], "exposure", -16, 16));
+    }
+    for (char const* const field : {"scene_time", "paused", "exposure"}) {
+        document.erase(field);
+    }
+    return out;
+}
+
+Camera camera_of(CameraKey const& key) {
+    Camera out = look_at(key.position, key.target, key.up, key.vertical_fov);
+    if (key.orthographic_height > 0) {
+        out.projection = Projection::orthographic;
+        out.vertical_extent = key.orthographic_height;
+    }
+    return out;
+}
+
 /// Cubic Hermite piece from a to b, `t` in [0, 1], tangents for the piece's whole length.
 template <typename T>
 T hermite(T const& a, T const& b, T const& tangent_a, T const& tangent_b, float t) {
@@ -103,13 +140,25 @@ T hermite(T const& a, T const& b, T const& tangent_a, T const& tangent_b, float 
 
 } // namespace
 
+ClockRequest CameraMoment::clock_request() const {
+    ClockRequest out;
+    if (scene_time) {
+        out.set |= ClockRequest::time;
+        out.state.time = *scene_time;
+    }
+    if (paused) {
+        out.set |= ClockRequest::playing;
+        out.state.playing = !*paused;
+    }
+    return out;
+}
+
 Camera CameraPath::at(double seconds) const {
     FRAMELET_CHECK(!keys.empty());
     auto const after =
         std::upper_bound(keys.begin(), keys.end(), seconds, [](double t, CameraKey const& k) { return t < k.time; });
     if (after == keys.begin() || after == keys.end()) {
-        CameraKey const& key = after == keys.begin() ? keys.front() : keys.back();
-        return look_at(key.position, key.target, key.up, key.vertical_fov);
+        return camera_of(after == keys.begin() ? keys.front() : keys.back());
     }
     CameraKey const& a = *(after - 1);
     CameraKey const& b = *after;
@@ -152,6 +201,9 @@ CameraPath parse_camera_path(std::string const& json, std::string const& name) {
         reader.fail("a number in it is out of range");
     }
     CameraPath out;
+    if (document.is_object()) {
+        out.moment = take_moment(reader, document);
+    }
     if (document.is_object() && document.contains("scene_camera")) {
         reader.only_fields(document, {"scene_camera"});
         Json const& number = document["scene_camera"];
@@ -176,6 +228,9 @@ CameraPath parse_camera_path(std::string const& json, std::string const& name) {
             reader.required(key, "time");
         }
         out.keys.push_back(reader.key(key));
+        if (out.keys.back().orthographic_height > 0) {
+            reader.fail("\"orthographic_height\" is for a camera that stands still");
+        }
         if (out.keys.size() > 1 && !(out.keys.back().time > (out.keys.end() - 2)->time)) {
             reader.fail("the times of the keys must grow");
         }

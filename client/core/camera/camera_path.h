@@ -1,11 +1,13 @@
-// A camera or a flight from a JSON file. In: the file. Out: the camera at any time.
+// A camera or a flight from a JSON file, and what of the scene goes with it. In: the file. Out: the camera at any time.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/camera.h"
+#include "protocol/messages/message.h"
 
 namespace framelet {
 
@@ -15,6 +17,18 @@ struct CameraKey {
     Vec3 target{0, 0, -1}; ///< a point that is in the middle of the picture; likewise
     Vec3 up{0, 1, 0}; ///< direction in the world
     float vertical_fov = 0.7854f; ///< radians
+    float orthographic_height = 0; ///< metres; 0: it is a perspective camera
+};
+
+/// The moment that a camera file is of, as far as it says.
+struct CameraMoment {
+    std::optional<double> scene_time = {}; ///< of the scene's clock, seconds
+    std::optional<bool> paused = {}; ///< the clock stands there
+    std::optional<float> exposure_ev = {}; ///< as in ViewerSettings
+
+    bool operator==(CameraMoment const&) const = default;
+    /// What is asked of the clock for it; nothing where it says nothing of it.
+    ClockRequest clock_request() const;
 };
 
 /// One key stands still; several are passed in order of time on a smooth curve (a cubic through every key whose
@@ -23,6 +37,7 @@ struct CameraKey {
 struct CameraPath {
     int scene_camera = -1; ///< >= 0: a camera of the scene instead of keys
     std::vector<CameraKey> keys;
+    CameraMoment moment; ///< to begin with
 
     /// The camera so many seconds after the path's start. There has to be a key.
     Camera at(double seconds) const;
@@ -31,8 +46,9 @@ struct CameraPath {
 };
 
 /// Parses {"position": [x,y,z], "target": [x,y,z], "up": [0,1,0], "fov_degrees": 45}, where "up" and "fov_degrees" may
-/// be left out, or {"keys": [{"time": seconds, "position": ..., ...}, ...]}, or {"scene_camera": 0}. Throws InputError;
-/// `name` is for its message.
+/// be left out and "orthographic_height" may stand in place of the latter, or {"keys": [{"time": seconds, "position":
+/// ..., ...}, ...]} of perspective cameras, or {"scene_camera": 0}; each with "scene_time", "paused" and "exposure"
+/// where it is of a moment. Throws InputError; `name` is for its message.
 CameraPath parse_camera_path(std::string const& json, std::string const& name);
 
 /// Reads a file and parses it likewise. Throws InputError, also where the file cannot be read.

@@ -30,6 +30,19 @@ std::string without_url(std::string text) {
 
 } // namespace
 
+bool asks_for_tls(std::string const& text) {
+    std::string const scheme = text.substr(0, text.find("://"));
+    std::size_t const begin = std::min(scheme.find_first_not_of(" \t\r\n"), scheme.size());
+    return scheme.size() < text.size() && (scheme.substr(begin) == "tls" || scheme.substr(begin) == "https");
+}
+
+std::string with_tls(std::string const& text, bool tls) {
+    if (asks_for_tls(text) == tls) {
+        return text;
+    }
+    return tls ? "tls://" + without_url(text) : without_url(text);
+}
+
 ServerAddress parse_address(std::string const& from, std::uint16_t port_without) {
     std::string const text = without_url(from);
     auto const fail = [&](char const* what) {

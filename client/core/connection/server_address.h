@@ -22,6 +22,11 @@ ServerAddress parse_server_address(std::string const& text);
 /// Reads the address of another program likewise; without a port it is `port_without`. Throws InputError.
 ServerAddress parse_address(std::string const& text, std::uint16_t port_without);
 
+/// True for a URL that stands for an encrypted connection: "tls://HOST" or "https://HOST".
+bool asks_for_tls(std::string const& text);
+/// The same address as that URL, or as none.
+std::string with_tls(std::string const& text, bool tls);
+
 struct ConnectionOptions {
     ServerAddress server;
     std::string token; ///< empty: on this machine that which a server of the same user has left
@@ -31,6 +36,9 @@ struct ConnectionOptions {
     bool reconnect = false; ///< a session that ends before its time is followed by another as soon as there is a server
     double connect_seconds = 10; ///< most time until name, connection and handshake are done
     double silence_seconds = 5; ///< time without a message after which the server is given up
+
+    /// The server as a user may name it another time: "HOST:PORT", or "tls://HOST:PORT".
+    std::string server_name() const { return with_tls(server.text(), tls); }
 };
 
 } // namespace framelet

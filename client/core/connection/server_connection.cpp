@@ -16,6 +16,7 @@
 #include "client/core/connection/address_race.h"
 #include "client/core/connection/back_off.h"
 #include "client/core/connection/token_route.h"
+#include "client/core/connection/unknown_certificate.h"
 #include "common/error.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"
@@ -55,7 +56,6 @@ struct ServerConnection::Impl {
     std::shared_ptr<asio::ssl::context> tls;
     std::promise<void> opened;
     Welcome welcome; ///< of the first session
-    std::string notice; ///< of the first session
 
     mutable std::mutex stream_mutex;
     std::shared_ptr<FramedStream> stream; ///< of the newest session that was opened
@@ -64,6 +64,7 @@ struct ServerConnection::Impl {
     std::uint64_t attempt = 0;
     std::shared_ptr<FramedStream> attempted; ///< stream of this attempt, once it is connected
     std::string distrust; ///< why this attempt's certificate is refused; empty: it is not
+    std::string unknown_fingerprint; ///< of that certificate, where the user is to be asked
     bool has_ticket = false; ///< this attempt's Hello has a ticket
     bool open = false; ///< this attempt's Welcome has come
     bool was_open = false; ///< some attempt's Welcome has come
@@ -109,8 +110,10 @@ struct ServerConnection::Impl {
         // The rest may want memory that is missing, and is then done once more.
         is_to_tell_interruption = std::exchange(open, false) || is_to_tell_interruption;
         if (!was_open) {
-            auto const error = retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
-                                                     : std::make_exception_ptr(ConnectionError(reason));
+            auto const error = !unknown_fingerprint.empty()
+                                   ? std::make_exception_ptr(UnknownCertificate(reason, server, unknown_fingerprint))
+                               : retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
+                                                       : std::make_exception_ptr(ConnectionError(reason));
             is_over = true;
             opened.set_exception(error);
         } else if (retry == Retry::never || !options.reconnect || !handlers.on_reopened) {
@@ -249,9 +252,8 @@ struct ServerConnection::Impl {
     bool trusts(std::string const& fingerprint) {
         CertificateVerdict verdict = judge_certificate(known_servers_file(), server, fingerprint);
         if (!verdict.is_trusted) {
-            distrust = std::move(verdict.notice);
-        } else if (!was_open) {
-            notice = std::move(verdict.notice);
+            distrust = std::move(verdict.complaint);
+            unknown_fingerprint = verdict.is_unknown ? fingerprint : "";
         }
         return verdict.is_trusted;
     }
@@ -374,10 +376,6 @@ ServerConnection::~ServerConnection() {
 
 Welcome const& ServerConnection::welcome() const {
     return impl_->welcome;
-}
-
-std::string const& ServerConnection::notice() const {
-    return impl_->notice;
 }
 
 void ServerConnection::send(Message const& message) {

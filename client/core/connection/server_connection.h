@@ -34,7 +34,8 @@ public:
     };
 
     /// Blocks until the session is open. Throws ConnectionError where it cannot be opened, as ConnectionRefusal where
-    /// trying again would not help, InputError for a certificate authority file that cannot be used.
+    /// trying again would not help, of these UnknownCertificate where the user may trust it, InputError for a
+    /// certificate authority file that cannot be used.
     ServerConnection(ConnectionOptions const& options, Handlers handlers);
     /// Ends the session, and tells the server so. No handler is called afterwards. Not to be called from a handler.
     ~ServerConnection();
@@ -43,8 +44,6 @@ public:
 
     /// The Welcome of the first session.
     Welcome const& welcome() const;
-    /// One line that the user should know of the certificate that the first session began with; mostly empty.
-    std::string const& notice() const;
     /// Sends a message; does nothing while no session is open. May be called from any thread.
     void send(Message const& message);
     /// True when everything that was queued has been taken by the network. May be called from any thread.

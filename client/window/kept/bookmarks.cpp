@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "client/core/camera/camera_path.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
 
@@ -56,26 +55,15 @@ Bookmark read_bookmark(Json entry, std::string const& file) {
         out.name = entry["name"].get<std::string>().substr(0, longest_name);
         entry.erase("name");
     }
-    double height = 0;
-    if (entry.is_object() && entry.contains("orthographic_height") && entry["orthographic_height"].is_number()) {
-        height = entry["orthographic_height"].get<double>();
-        entry.erase("orthographic_height");
-    }
     CameraPath const path = parse_camera_path(entry.dump(), file);
     if (path.keys.size() != 1) {
         throw InputError("camera file " + file + ": a bookmark must be a still camera");
     }
     out.camera = path.at(0);
-    if (height > 0) {
-        out.camera.projection = Projection::orthographic;
-        out.camera.vertical_extent =
-            static_cast<float>(std::clamp<double>(height, least_view_height, most_view_height));
-    }
     return out;
 }
 
-/// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file, "orthographic_height" in place
-/// of "fov_degrees" where it is that}, ...]}.
+/// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file}, ...]}.
 std::string bookmarks_text(std::vector<Bookmark> const& bookmarks) {
     Json cameras = Json::array();
     for (Bookmark const& bookmark : bookmarks) {
@@ -102,11 +90,18 @@ std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const
 
 } // namespace
 
-std::string camera_file_text(Camera const& camera) {
-    if (camera.projection == Projection::orthographic) {
-        throw InputError("a camera file cannot hold an orthographic camera");
+std::string camera_file_text(Camera const& camera, CameraMoment const& moment) {
+    Json out = camera_json(camera);
+    if (moment.scene_time) {
+        out["scene_time"] = *moment.scene_time;
     }
-    return camera_json(camera).dump() + "\n";
+    if (moment.paused) {
+        out["paused"] = *moment.paused;
+    }
+    if (moment.exposure_ev) {
+        out["exposure"] = shortest(*moment.exposure_ev);
+    }
+    return out.dump() + "\n";
 }
 
 Bookmarks::Bookmarks(std::filesystem::path file, std::filesystem::path const& older) : file_(std::move(file)) {

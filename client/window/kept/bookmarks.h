@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "client/core/camera/camera_path.h"
 #include "common/camera.h"
 
 namespace framelet {
@@ -16,9 +17,8 @@ struct Bookmark {
     bool operator==(Bookmark const&) const = default;
 };
 
-/// The camera as --camera reads it, with a line's end. Throws InputError for an orthographic one, which such files do
-/// not know.
-std::string camera_file_text(Camera const& camera);
+/// The camera, and the moment that it is of, as --camera reads them, with a line's end.
+std::string camera_file_text(Camera const& camera, CameraMoment const& moment);
 
 /// Files of a scene's bookmarks; empty: there is none.
 struct BookmarkFiles {

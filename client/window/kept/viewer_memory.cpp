@@ -90,7 +90,8 @@ ViewerMemory parse_viewer_memory(std::string const& text) {
     for (Json const& server : servers.is_array() ? servers : Json::array()) {
         try {
             if (server.is_string() && out.servers.size() < ViewerMemory::most_servers) {
-                out.servers.push_back(parse_server_address(server.get<std::string>()).text());
+                auto const name = server.get<std::string>();
+                out.servers.push_back(with_tls(parse_server_address(name).text(), asks_for_tls(name)));
             }
         } catch (InputError const&) { // left out
         }

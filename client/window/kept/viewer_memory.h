@@ -15,7 +15,7 @@ struct ViewerMemory {
     bool shows_statistics = false;
     bool shows_details = false;
     bool shows_bar = true;
-    std::vector<std::string> servers; ///< HOST:PORT, the newest first
+    std::vector<std::string> servers; ///< as `ConnectionOptions::server_name`, the newest first
     // What was set by hand in the window; options of the command line go before it, and are not remembered.
     float bias = 0; ///< as in ViewerSettings
     double lag_seconds = 0; ///< as in `ClientCore::set_smoothing`

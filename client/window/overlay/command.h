@@ -8,9 +8,10 @@ namespace framelet {
 /// A command that a key, or a button of the overlay, stands for.
 enum class Command : std::uint8_t {
     quit,
-    escape, ///< close a menu, or else quit
+    escape, ///< as `EscapeKey`
     reset,
     reconnect,
+    open_file,
     play_or_pause,
     step_forward,
     step_back,
@@ -27,12 +28,16 @@ enum class Command : std::uint8_t {
     mouse_look, ///< begin it, or end it
     fit_scene,
     view_front,
+    view_back,
     view_right,
+    view_left,
     view_top,
+    view_below,
     toggle_projection,
     add_bookmark,
     remove_bookmark,
     copy_camera,
+    paste_camera,
     save_camera,
     toggle_fullscreen,
     toggle_help,

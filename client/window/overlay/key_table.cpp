@@ -12,13 +12,16 @@ namespace {
 
 constexpr KeyModifiers alone{};
 constexpr KeyModifiers shift{.shift = true};
+constexpr KeyModifiers control{.control = true};
 constexpr KeyModifiers alt{.alt = true};
 
 constexpr std::array unnumbered{
+    KeyMeaning{GLFW_KEY_Q, control, Command::quit, false},
     KeyMeaning{GLFW_KEY_ESCAPE, alone, Command::escape, false},
     KeyMeaning{GLFW_KEY_R, alone, Command::reset, false},
     KeyMeaning{GLFW_KEY_ENTER, alone, Command::reconnect, false},
     KeyMeaning{GLFW_KEY_KP_ENTER, alone, Command::reconnect, false},
+    KeyMeaning{GLFW_KEY_O, control, Command::open_file, false},
     KeyMeaning{GLFW_KEY_SPACE, alone, Command::play_or_pause, false},
     KeyMeaning{GLFW_KEY_PERIOD, alone, Command::step_forward, true},
     KeyMeaning{GLFW_KEY_COMMA, alone, Command::step_back, true},
@@ -37,12 +40,18 @@ constexpr std::array unnumbered{
     KeyMeaning{GLFW_KEY_M, alone, Command::mouse_look, false},
     KeyMeaning{GLFW_KEY_F, alone, Command::fit_scene, false},
     KeyMeaning{GLFW_KEY_KP_1, alone, Command::view_front, false},
+    KeyMeaning{GLFW_KEY_KP_1, control, Command::view_back, false},
     KeyMeaning{GLFW_KEY_KP_3, alone, Command::view_right, false},
+    KeyMeaning{GLFW_KEY_KP_3, control, Command::view_left, false},
     KeyMeaning{GLFW_KEY_KP_7, alone, Command::view_top, false},
+    KeyMeaning{GLFW_KEY_KP_7, control, Command::view_below, false},
     KeyMeaning{GLFW_KEY_KP_5, alone, Command::toggle_projection, false},
     KeyMeaning{GLFW_KEY_B, alone, Command::add_bookmark, false},
     KeyMeaning{GLFW_KEY_B, shift, Command::remove_bookmark, false},
     KeyMeaning{GLFW_KEY_C, alone, Command::copy_camera, false},
+    KeyMeaning{GLFW_KEY_C, control, Command::copy_camera, false},
+    KeyMeaning{GLFW_KEY_V, alone, Command::paste_camera, false},
+    KeyMeaning{GLFW_KEY_V, control, Command::paste_camera, false},
     KeyMeaning{GLFW_KEY_C, shift, Command::save_camera, false},
     KeyMeaning{GLFW_KEY_F1, alone, Command::toggle_help, false},
     KeyMeaning{GLFW_KEY_F2, alone, Command::toggle_statistics, false},
@@ -132,7 +141,7 @@ std::string key_names(Command command) {
             continue;
         }
         out += out.empty() ? "" : " or ";
-        out += meaning.with.alt ? "Alt+" : meaning.with.shift ? "Shift+" : "";
+        out += meaning.with.alt ? "Alt+" : meaning.with.control ? "Ctrl+" : meaning.with.shift ? "Shift+" : "";
         out += name_of_key(meaning.key);
     }
     return out;

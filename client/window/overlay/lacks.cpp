@@ -7,8 +7,6 @@ namespace framelet {
 
 namespace {
 
-constexpr char const* nothing_moves = "nothing moves in this scene";
-
 std::string samples_stay() {
     return with_keys("pixels are shown where they were rendered", Command::toggle_reprojection);
 }
@@ -17,7 +15,7 @@ std::string samples_stay() {
 
 std::string clock_lacks(bool is_gone, bool moves, bool controls) {
     return is_gone     ? "the server is gone: its clock cannot be set"
-           : !moves    ? nothing_moves
+           : !moves    ? nothing_moves_text
            : !controls ? watching_text
                        : "";
 }
@@ -27,15 +25,11 @@ std::string scene_cameras_lack(std::size_t count) {
 }
 
 std::string smoothing_lacks(bool moves, bool moves_samples) {
-    return !moves ? nothing_moves : moves_samples ? "" : samples_stay();
+    return !moves ? nothing_moves_text : moves_samples ? "" : samples_stay();
 }
 
 std::string confidence_lacks(bool moves_samples) {
     return moves_samples ? "" : samples_stay() + ": ages say the same";
-}
-
-std::string camera_file_lacks(Camera const& camera) {
-    return camera.projection == Projection::orthographic ? "a camera file cannot hold an orthographic camera" : "";
 }
 
 std::string picture_lacks(bool has_picture) {

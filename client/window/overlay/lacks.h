@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <string>
 
-#include "common/camera.h"
-
 namespace framelet {
 
 /// Says why the scene's clock cannot be set. `is_gone`: there is no session. `moves`: the scene has animation.
@@ -19,8 +17,6 @@ std::string scene_cameras_lack(std::size_t count);
 std::string smoothing_lacks(bool moves, bool moves_samples);
 /// Says why the confidence of pixels cannot be drawn over the picture.
 std::string confidence_lacks(bool moves_samples);
-/// Says why this camera cannot be put into a camera file.
-std::string camera_file_lacks(Camera const& camera);
 /// Says why no screenshot or film can be taken.
 std::string picture_lacks(bool has_picture);
 

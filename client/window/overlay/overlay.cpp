@@ -31,6 +31,7 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
     if (content.time_line) {
         draw_bar(content, frame);
     }
+    covered_below_ = static_cast<int>(frame.bar_height * io.DisplayFramebufferScale.y);
     if (content.statistics && content.help.empty()) { // there is room for one of them in small windows
         draw_statistics(*content.statistics, frame);
     }
@@ -47,7 +48,7 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
         draw_text("note", {0.5f, 1}, content.note, frame);
     }
     if (!content.message.empty()) {
-        draw_message(content.message, content.address ? &*content.address : nullptr, address_, frame);
+        draw_message(content, server_, frame);
     }
     has_menu_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopup);
     if (has_menu_) { // a click beside it closes it, and does no more
@@ -96,7 +97,7 @@ OverlayActions Overlay::draw(OverlayContent const& content, float scale) {
         set_scale(scale);
     }
     if (content.address && !has_address_) {
-        address_ = content.address->proposed;
+        server_ = {content.address->proposed};
     }
     has_address_ = content.address.has_value();
     OverlayActions actions;

@@ -26,10 +26,12 @@ public:
     OverlayActions draw(OverlayContent const& content, float scale);
     /// Areas of what was drawn last in which the mouse does something, pixels of the framebuffer.
     std::span<PixelRect const> mouse_areas() const { return mouse_areas_; }
+    /// Pixels of the framebuffer at the lower edge over which the bar was drawn last.
+    int covered_below() const { return covered_below_; }
     /// True while letters go into a text, and are no commands.
     bool is_typed_into() const;
-    /// The text in the field for a server.
-    std::string const& address() const { return address_; }
+    /// The server that stands in the fields.
+    NamedServer const& server() const { return server_; }
     bool has_menu() const { return has_menu_; }
     /// Closes a menu that is open with the next `draw`.
     void close_menu() { closes_menu_ = true; }
@@ -41,10 +43,11 @@ private:
     float scale_ = 0; ///< of the text; 0: none has been drawn
     OverlayContent drawn_;
     std::vector<PixelRect> mouse_areas_;
+    int covered_below_ = 0;
     bool has_menu_ = false;
     bool closes_menu_ = false;
     NameEdit edit_;
-    std::string address_; ///< as typed
+    NamedServer server_; ///< as typed
     bool has_address_ = false; ///< its field is shown, and has been filled in
 };
 

@@ -163,8 +163,8 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
         ImGui::PopID();
     }
     ImGui::Separator();
-    for (Command const command :
-         {Command::view_front, Command::view_right, Command::view_top, Command::toggle_projection}) {
+    for (Command const command : {Command::view_front, Command::view_back, Command::view_right, Command::view_left,
+                                  Command::view_top, Command::view_below, Command::toggle_projection}) {
         if (ImGui::Selectable(tip_of(command).c_str(), false, ImGuiSelectableFlags_DontClosePopups)) {
             frame.actions.commands.push_back(command);
         }
@@ -175,13 +175,11 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
         bookmark_row(static_cast<int>(i), menu.bookmarks[i], frame);
     }
     ImGui::PopID();
-    for (Command const command : {Command::add_bookmark, Command::copy_camera, Command::save_camera}) {
-        std::string const lacks = command == Command::add_bookmark ? "" : menu.files_lack;
-        begin_lack(lacks);
+    for (Command const command :
+         {Command::add_bookmark, Command::copy_camera, Command::paste_camera, Command::save_camera}) {
         if (ImGui::Selectable(tip_of(command).c_str(), false, ImGuiSelectableFlags_DontClosePopups)) {
             frame.actions.commands.push_back(command);
         }
-        end_lack(lacks, help_text(command));
     }
     ImGui::EndPopup();
 }

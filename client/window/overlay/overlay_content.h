@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "client/core/drawn_over/drawn_over.h"
+#include "client/window/named_server.h"
 #include "client/window/overlay/command.h"
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/time_line.h"
@@ -43,7 +44,6 @@ struct CameraMenu {
     std::string current;
     std::vector<std::string> scene_cameras; ///< names, for people
     std::vector<std::string> bookmarks; ///< their names
-    std::string files_lack{}; ///< why there is no camera file of what one looks through; empty: there may be
     bool operator==(CameraMenu const&) const = default;
 };
 
@@ -60,22 +60,24 @@ struct NameEdit {
     std::string text{};
 };
 
-/// A field in which a server may be named.
+/// Fields in which a server may be named, and its token.
 struct AddressField {
     std::string proposed;
     std::vector<std::string> recent;
     bool takes_keys = false; ///< from the first, without a click into it
+    bool always_tls = false; ///< whatever the address says
     bool operator==(AddressField const&) const = default;
 };
 
 struct OverlayContent {
-    TextRows help; ///< empty: not shown
+    std::vector<HelpGroup> help; ///< empty: not shown
     std::optional<StatisticsPanel> statistics;
     std::optional<Legend> legend;
     std::string sign; ///< small, at the upper edge; empty: none
     std::optional<float> progress; ///< a bar below it, [0, 1]
     std::string note; ///< at the lower edge; empty: none
     std::string message; ///< in the middle; empty: none
+    bool asks_trust = false; ///< the message is a question, with two answers below
     std::optional<AddressField> address; ///< below the message
     std::optional<TimeLine> time_line; ///< along the lower edge
     CameraMenu cameras; ///< in that bar
@@ -103,7 +105,8 @@ struct OverlayActions {
         std::string name;
     };
     std::optional<Renamed> renamed;
-    std::optional<std::string> address; ///< to connect to
+    std::optional<NamedServer> server; ///< to connect to
+    std::optional<bool> trusts; ///< the answer to the message
 };
 
 } // namespace framelet

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "client/core/connection/server_address.h"
 #include "client/core/drawn_over/age_colors.h"
 #include "client/window/overlay/key_table.h"
 #include "client/window/overlay/overlay_text.h"
@@ -69,10 +70,32 @@ void draw_ramp(Legend const& legend) {
     ImGui::TextUnformatted(legend.oldest.c_str());
 }
 
-/// The use of the mouse on a panel.
+/// Draws groups below each other. Widths of the names and of what they do, pixels.
+void help_column(std::span<HelpGroup const> groups, float name_width, float text_width) {
+    ImGui::BeginGroup();
+    for (HelpGroup const& group : groups) {
+        ImGui::TextDisabled("%s", group.title.c_str());
+        if (ImGui::BeginTable(group.title.c_str(), 2, ImGuiTableFlags_SizingFixedFit)) {
+            ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, name_width);
+            ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthFixed, text_width);
+            for (auto const& [name, text] : group.rows) {
+                name_cell(name);
+                ImGui::TableNextColumn();
+                ImGui::PushTextWrapPos(0);
+                ImGui::TextUnformatted(text.c_str());
+                ImGui::PopTextWrapPos();
+            }
+            ImGui::EndTable();
+        }
+    }
+    ImGui::EndGroup();
+}
+
+/// The use of mouse and keyboard on a panel.
 enum class PanelKind {
     told, ///< none
     takes_mouse,
+    takes_keys, ///< Tab goes through its fields, too
     scrolls, ///< its wheel scrolls, where there is more of it than room
 };
 
@@ -86,13 +109,75 @@ bool begin_panel(char const* name, ImVec2 anchor, float opacity, OverlayFrame co
                        margin + anchor.y * (size.y - frame.bar_height - 2 * margin));
     ImGui::SetNextWindowPos(place, ImGuiCond_Always, anchor);
     ImGui::SetNextWindowBgAlpha(opacity);
-    ImGuiWindowFlags const inputs =
-        kind == PanelKind::told ? ImGuiWindowFlags_NoInputs : ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
+    ImGuiWindowFlags const inputs = kind == PanelKind::told ? ImGuiWindowFlags_NoInputs
+                                    : kind == PanelKind::takes_keys
+                                        ? ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNavFocus
+                                        : ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoNav;
     ImGuiWindowFlags const bars = kind == PanelKind::scrolls ? 0 : ImGuiWindowFlags_NoScrollbar;
     return ImGui::Begin(name, nullptr,
                         ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoCollapse |
                             ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoSavedSettings |
                             ImGuiWindowFlags_NoFocusOnAppearing | inputs | bars);
+}
+
+/// A field beside its name; true when it was ended by Enter.
+bool text_field(char const* name, std::string& text, ImGuiInputTextFlags flags, OverlayFrame& frame) {
+    std::array<char, 300> buffer{};
+    std::copy_n(text.begin(), std::min(text.size(), buffer.size() - 1), buffer.begin());
+    ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
+    bool const entered =
+        ImGui::InputText(name, buffer.data(), buffer.size(),
+                         flags | ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+    // Esc gives back what was there; where nothing was typed it is as elsewhere.
+    if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
+        text == buffer.data()) {
+        frame.actions.commands.push_back(Command::escape);
+    }
+    text = buffer.data();
+    return entered;
+}
+
+void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFrame& frame) {
+    float const begin = ImGui::GetCursorPosX() + ImGui::CalcTextSize("server: ").x;
+    auto const label = [begin](char const* text) {
+        ImGui::AlignTextToFramePadding();
+        ImGui::TextUnformatted(text);
+        ImGui::SameLine(begin);
+    };
+    ImGui::Separator();
+    label("server:");
+    if (field.takes_keys && ImGui::IsWindowAppearing()) {
+        ImGui::SetKeyboardFocusHere();
+    }
+    bool entered = text_field("##address", typed.address, 0, frame);
+    tooltip("HOST or HOST:PORT, where framelet-server listens");
+    ImGui::SameLine();
+    bool tls = field.always_tls || asks_for_tls(typed.address);
+    ImGui::BeginDisabled(field.always_tls);
+    if (ImGui::Checkbox("TLS", &tls)) {
+        typed.address = with_tls(typed.address, tls);
+    }
+    ImGui::EndDisabled();
+    tooltip(field.always_tls ? "the command line says so"
+                             : "encrypt the connection, as servers beyond this machine ask");
+    label("token:");
+    entered = text_field("##token", typed.token, ImGuiInputTextFlags_Password, frame) || entered;
+    tooltip(
+        "what the server's --token-file has. Empty: as on the command line, and none on the same machine as the same "
+        "user. It is not kept");
+    ImGui::SameLine();
+    if ((ImGui::Button("connect") || entered) && !typed.address.empty()) {
+        frame.actions.server = typed;
+    }
+    for (std::string const& address : field.recent) {
+        if (ImGui::SmallButton(address.c_str())) {
+            frame.actions.server = {address, typed.token};
+        }
+        tooltip("connect to it as before");
+    }
+    ImGui::Separator();
+    button("open a scene file ...", Command::open_file, frame);
+    ImGui::NewLine();
 }
 
 } // namespace
@@ -182,43 +267,33 @@ void draw_legend(Legend const& legend, OverlayFrame& frame) {
     ImGui::End();
 }
 
-void draw_help(TextRows const& rows, OverlayFrame& frame) {
+void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame) {
     ImGuiStyle const& style = ImGui::GetStyle();
     ImVec2 const window = ImGui::GetIO().DisplaySize;
     float const font = ImGui::GetFontSize();
     ImVec2 const room(window.x - 2 * font, window.y - frame.bar_height - 2 * font);
     float name_width = 0;
     float text_width = 0;
-    for (auto const& [name, text] : rows) {
-        name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
-        text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
+    for (HelpGroup const& group : groups) {
+        for (auto const& [name, text] : group.rows) {
+            name_width = std::max(name_width, ImGui::CalcTextSize(name.c_str()).x);
+            text_width = std::max(text_width, ImGui::CalcTextSize(text.c_str()).x);
+        }
     }
-    // Two columns of rows where there is room for that with what they say in two lines; what is still higher than the
+    // Two columns of groups where there is room for that with what they say in two lines; what is still higher than the
     // window is turned by the wheel.
-    float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize;
+    float const inside = room.x - 2 * style.WindowPadding.x - style.ScrollbarSize - 2 * font;
     float const gaps = 2 * style.CellPadding.x;
     bool const is_wide = inside >= 2 * (name_width + text_width / 2 + 2 * gaps);
-    std::size_t const columns = is_wide ? 2 : 1;
+    int const columns = is_wide ? 2 : 1;
     float const column = inside / static_cast<float>(columns) - name_width - 2 * gaps;
     ImGui::SetNextWindowSizeConstraints(ImVec2(0, 0), room);
     if (begin_panel("help", {0.5f, 0}, 0.9f, frame, PanelKind::scrolls)) {
-        std::size_t const lines = (rows.size() + columns - 1) / columns;
-        if (ImGui::BeginTable("help table", 2 * static_cast<int>(columns), ImGuiTableFlags_SizingFixedFit)) {
-            for (std::size_t i = 0; i < columns; ++i) {
-                ImGui::TableSetupColumn("keys");
-                ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthFixed, std::min(column, text_width));
-            }
-            for (std::size_t i = 0; i < lines; ++i) {
-                ImGui::TableNextRow();
-                for (std::size_t k = i; k < rows.size(); k += lines) {
-                    name_cell(rows[k].first);
-                    ImGui::TableNextColumn();
-                    ImGui::PushTextWrapPos(0);
-                    ImGui::TextUnformatted(rows[k].second.c_str());
-                    ImGui::PopTextWrapPos();
-                }
-            }
-            ImGui::EndTable();
+        std::size_t const left = is_wide ? left_groups(groups) : groups.size();
+        help_column(groups.first(left), name_width, std::min(column, text_width));
+        if (is_wide) {
+            ImGui::SameLine(0, 2 * font);
+            help_column(groups.subspan(left), name_width, std::min(column, text_width));
         }
         if (ImGui::GetScrollMaxY() > 0) { // else drags go through it, to the camera
             take_area(frame);
@@ -244,42 +319,26 @@ void draw_text(char const* name, ImVec2 anchor, std::string const& text, Overlay
     ImGui::End();
 }
 
-void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame) {
+void draw_message(OverlayContent const& content, NamedServer& typed, OverlayFrame& frame) {
+    AddressField const* const field = content.address ? &*content.address : nullptr;
     if (begin_panel("message", {0.5f, 0.5f}, 0.9f, frame,
-                    field != nullptr ? PanelKind::takes_mouse : PanelKind::told)) {
+                    field != nullptr || content.asks_trust ? PanelKind::takes_keys : PanelKind::told)) {
         ImGui::PushTextWrapPos(ImGui::GetIO().DisplaySize.x * 0.8f);
-        ImGui::TextUnformatted(text.c_str());
+        ImGui::TextUnformatted(content.message.c_str());
         ImGui::PopTextWrapPos();
-        if (field != nullptr) {
+        if (content.asks_trust) {
             ImGui::Separator();
-            std::array<char, 300> buffer{};
-            std::copy_n(typed.begin(), std::min(typed.size(), buffer.size() - 1), buffer.begin());
-            ImGui::TextUnformatted("server:");
+            if (ImGui::Button("do not connect")) {
+                frame.actions.trusts = false;
+            }
             ImGui::SameLine();
-            ImGui::SetNextItemWidth(20 * ImGui::GetFontSize());
-            if (field->takes_keys && ImGui::IsWindowAppearing()) {
-                ImGui::SetKeyboardFocusHere();
+            if (ImGui::Button("trust it from now on")) {
+                frame.actions.trusts = true;
             }
-            bool const entered =
-                ImGui::InputText("##address", buffer.data(), buffer.size(),
-                                 ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
-            // Esc gives back what was there, and quits where nothing was typed.
-            if (ImGui::IsItemDeactivated() && ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) &&
-                typed == buffer.data()) {
-                frame.actions.commands.push_back(Command::escape);
-            }
-            typed = buffer.data();
-            tooltip("HOST or HOST:PORT, where framelet-server listens");
-            ImGui::SameLine();
-            if ((ImGui::Button("connect") || entered) && !typed.empty()) {
-                frame.actions.address = typed;
-            }
-            for (std::string const& address : field->recent) {
-                if (ImGui::SmallButton(address.c_str())) {
-                    frame.actions.address = address;
-                }
-                tooltip("connect to it as before");
-            }
+            take_area(frame);
+        }
+        if (field != nullptr) {
+            draw_server_fields(*field, typed, frame);
             take_area(frame);
         }
     }

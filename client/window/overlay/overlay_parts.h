@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,12 +45,13 @@ std::string tip_of(Command command);
 void draw_bar(OverlayContent const& content, OverlayFrame& frame);
 void draw_statistics(StatisticsPanel const& panel, OverlayFrame& frame);
 void draw_legend(Legend const& legend, OverlayFrame& frame);
-void draw_help(TextRows const& rows, OverlayFrame& frame);
+void draw_help(std::span<HelpGroup const> groups, OverlayFrame& frame);
 /// Draws a panel with a text. `progress`, [0, 1]: a bar below. At the right end of the upper edge it keeps clear of
 /// what takes the left one, as far as there is room.
 void draw_text(char const* name, ImVec2 anchor, std::string const& text, OverlayFrame const& frame,
                std::optional<float> progress = {});
-/// Draws a message and, where there is a field, that below it. `typed` is the field's text, kept by the caller.
-void draw_message(std::string const& text, AddressField const* field, std::string& typed, OverlayFrame& frame);
+/// Draws the message and, where there are any, the answers to it or the fields below it. `typed` is their text,
+/// kept by the caller.
+void draw_message(OverlayContent const& content, NamedServer& typed, OverlayFrame& frame);
 
 } // namespace framelet

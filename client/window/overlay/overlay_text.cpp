@@ -25,6 +25,11 @@ std::string fixed(double value, int digits, char const* unit) {
     return out.str();
 }
 
+std::string done_text(ClientStatistics const& s) {
+    std::string const state = name_of(s.state());
+    return s.state() == PictureState::finished ? state : state + ", " + fixed(s.coverage * 100, 0, "% known");
+}
+
 } // namespace
 
 void RateMeter::frame(double seconds_taken) {
@@ -84,10 +89,10 @@ std::vector<Plot> StatisticsHistory::plots() const {
     return out;
 }
 
-TextRows figure_rows(ClientStatistics const& s, ClockState const& clock, bool controls) {
+TextRows figure_rows(ClientStatistics const& s, TimeLine const& time, bool controls) {
     return {
-        {"done", fixed(s.coverage * 100, 0, "% of the picture") + (s.converged ? ", as good as it gets" : "")},
-        {"clock", clock_text(clock) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
+        {"done", done_text(s)},
+        {"clock", clock_text(time) + (s.lag_seconds > 0 ? "; " + lag_text(s.lag_seconds) : "") +
                       (controls ? "" : std::string("; ") + watching_text)},
     };
 }
@@ -117,7 +122,9 @@ std::string figure_tip(std::string const& name) {
         {"network", "what is received in batches of framelets"},
         {"server renders", "samples a second, for all viewers"},
         {"server busy", "the share of the last second in which the server had something to do for viewers"},
-        {"done", "how much of the picture is known at all"},
+        {"done",
+         "coarse: in places with fewer samples than pixels, as while anything moves; refining: a sample a pixel "
+         "or more, and better ones to come; finished: exact. Known is what any sample shows"},
         {"clock", "the scene's: Space lets it run and stops it"},
         {"picture", "the window's size, pixels"},
         {"painted by", "what paints that which moves: the graphics card, or the processor and why"},
@@ -187,10 +194,21 @@ std::string opening_text(std::string const& scene, std::string const& stage) {
     return scene.empty() ? "" : "opening " + scene + (stage.empty() ? " ..." : ": " + stage);
 }
 
-std::string clock_text(ClockState const& clock) {
+std::string saved_text(std::string const& file, std::string const& lacks, PictureState state) {
+    return "saved " + file + lacks +
+           (state == PictureState::finished ? "" : std::string("; it was not finished: still ") + name_of(state));
+}
+
+std::string clock_text(TimeLine const& time) {
+    if (time.duration <= 0) {
+        return nothing_moves_text;
+    }
     std::ostringstream out;
-    out << std::fixed << std::setprecision(2) << clock.time << " s, " << (clock.playing ? "playing" : "paused");
-    out << std::defaultfloat << " at " << clock.speed << "x";
+    out << std::fixed << std::setprecision(2) << time.place() << " of " << time.duration << " s, "
+        << (time.clock.playing ? "playing" : "paused");
+    if (time.clock.speed != 1) {
+        out << std::defaultfloat << " at " << time.clock.speed << "x";
+    }
     return out.str();
 }
 

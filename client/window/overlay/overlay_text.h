@@ -57,7 +57,7 @@ private:
 };
 
 /// The figures that most people want to know.
-TextRows figure_rows(ClientStatistics const& statistics, ClockState const& clock, bool controls);
+TextRows figure_rows(ClientStatistics const& statistics, TimeLine const& time, bool controls);
 /// The figures for who looks into what it costs.
 TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter, Viewport viewport,
                      std::string const& painter);
@@ -77,8 +77,10 @@ struct Signs {
     std::string recording = {}; ///< of the film that is being recorded; empty: none is
 };
 std::string sign_text(Signs const& signs);
-/// The clock's state as text: "12.34 s, playing at 1x".
-std::string clock_text(ClockState const& clock);
+/// What is said of a picture that was saved. `lacks`: what is missing in it. `state`: of the picture as it was then.
+std::string saved_text(std::string const& file, std::string const& lacks, PictureState state);
+/// The clock as text: "1.50 of 4.00 s, playing at 2x".
+std::string clock_text(TimeLine const& time);
 /// The lag as text: "the scene 100 ms late".
 std::string lag_text(double lag_seconds);
 
