@@ -229,7 +229,7 @@ std::span<Verb const> verbs() {
         {.name = "pauses",
          .question = "Whether what a viewer shows at rest is what one who comes only then is shown (exit code 1: not)",
          .answer = answer_pauses,
-         .scenes = {"vehicle_chase", "teleport", "windmill", "globe", "flicker", "vehicle_crossing"},
+         .scenes = {"vehicle_chase", "teleport", "windmill", "walker", "flicker", "fan"},
          .usual = {.viewport = {160, 90}},
          .quick = {.viewport = {96, 54}}},
         {.name = "sensitivity",
