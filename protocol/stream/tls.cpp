@@ -1,7 +1,6 @@
 #include "protocol/stream/tls.h"
 
 #include <array>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -11,6 +10,7 @@
 #include <openssl/x509_vfy.h>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 
 namespace framelet {
 namespace {
@@ -44,17 +44,26 @@ bool holds(std::string const& file, std::string const& kind) {
     return false;
 }
 
-void require(boost::system::error_code const& error, std::string const& what, std::string const& file) {
+void require(boost::system::error_code const& error, std::string const& what, std::string const& file,
+             RegularFile const& opened) {
     if (!error) {
         return;
     }
     bool const wants_key = what == "TLS key";
-    bool const swapped = std::filesystem::is_regular_file(file) &&
-                         holds(file, wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
-                         !holds(file, wants_key ? "PRIVATE KEY" : "CERTIFICATE");
+    bool const swapped = holds(opened.name(), wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
+                         !holds(opened.name(), wants_key ? "PRIVATE KEY" : "CERTIFICATE");
     std::string const mistaken = wants_key ? "it is a certificate, not a private key: give the key here"
                                            : "it is a private key, not a certificate: give the certificate here";
     throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
+}
+
+/// Throws InputError where there is no such file: a library would wait for a pipe.
+RegularFile opened(std::string const& what, std::string const& file) {
+    RegularFile found(file);
+    if (!found) {
+        throw InputError(what + " '" + file + "' cannot be used: " + found.problem());
+    }
+    return found;
 }
 
 /// Throws std::bad_alloc where there is no memory for it.
@@ -128,11 +137,13 @@ std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certifi
     boost::system::error_code error;
     // A key under a password is refused; otherwise the library would ask for it on the terminal.
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
-    context->use_certificate_chain_file(certificate_file, error);
-    require(error, "TLS certificate", certificate_file);
+    RegularFile const certificate = opened("TLS certificate", certificate_file);
+    context->use_certificate_chain_file(certificate.name(), error);
+    require(error, "TLS certificate", certificate_file, certificate);
     // This also checks that the key is the certificate's.
-    context->use_private_key_file(key_file, ssl::context::pem, error);
-    require(error, "TLS key", key_file);
+    RegularFile const key = opened("TLS key", key_file);
+    context->use_private_key_file(key.name(), ssl::context::pem, error);
+    require(error, "TLS key", key_file, key);
     return context;
 }
 
@@ -142,10 +153,13 @@ std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authori
     boost::system::error_code error;
     if (authority_file.empty()) {
         context->set_default_verify_paths(error);
-        require(error, "TLS authorities", "of the system");
+        if (error) {
+            throw InputError("the system's TLS authorities cannot be used: " + error.message());
+        }
     } else {
-        context->load_verify_file(authority_file, error);
-        require(error, "TLS authority", authority_file);
+        RegularFile const authority = opened("TLS authority", authority_file);
+        context->load_verify_file(authority.name(), error);
+        require(error, "TLS authority", authority_file, authority);
     }
     if (!judge) {
         return context;
@@ -156,7 +170,8 @@ std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authori
 }
 
 std::string certificate_fingerprint(std::string const& certificate_file) {
-    std::unique_ptr<BIO, decltype(&BIO_free)> const file(BIO_new_file(certificate_file.c_str(), "r"), BIO_free);
+    RegularFile const found = opened("TLS certificate", certificate_file);
+    std::unique_ptr<BIO, decltype(&BIO_free)> const file(BIO_new_file(found.name().c_str(), "r"), BIO_free);
     std::unique_ptr<X509, decltype(&X509_free)> const certificate(
         file ? PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr) : nullptr, X509_free);
     if (!certificate) {

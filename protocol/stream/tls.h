@@ -11,7 +11,7 @@
 
 namespace framelet {
 
-/// Make contexts for TLS 1.3 and later. Throw InputError that names the file.
+/// Make contexts for TLS 1.3 and later. Throw InputError that names the file, also where that is a pipe.
 std::shared_ptr<boost::asio::ssl::context> make_tls_server_context(std::string const& certificate_file,
                                                                    std::string const& key_file);
 /// Says whether to trust a certificate for which no authority vouches, by its fingerprint; empty: one does, and what is

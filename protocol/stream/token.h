@@ -24,7 +24,8 @@ Ticket make_ticket();
 bool same_token(std::string_view left, std::string_view right);
 
 /// Reads a token: the first line of `file` without the white space around it. InputError where the file cannot be read,
-/// or the line is empty, shorter than `min_token_bytes`, longer than 4096 bytes or not UTF-8 text.
+/// is a pipe out of which no line comes for 5 s, or the line is empty, shorter than `min_token_bytes`, longer than 4096
+/// bytes or not UTF-8 text.
 std::string read_token_file(std::filesystem::path const& file);
 
 } // namespace framelet

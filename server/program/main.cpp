@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -40,7 +39,7 @@
 namespace framelet {
 namespace {
 
-/// Reads the tokens, and tries the certificate and the recording. Throws InputError where a file is of no use; to find
+/// Reads the tokens, and tries the certificate. Throws InputError where a file is of no use; to find
 /// that out only when it is needed could take as long as the scene does.
 void read_files(Options& options) {
     ServerOptions& server = options.server;
@@ -52,10 +51,6 @@ void read_files(Options& options) {
     }
     if (!server.tls_certificate.empty()) {
         make_tls_server_context(server.tls_certificate, server.tls_key);
-    }
-    if (!options.record_events.empty() && !std::ofstream(options.record_events, std::ios::app)) {
-        throw InputError("cannot write '" + options.record_events.string() +
-                         "': give --record-events a file in a folder that exists");
     }
 }
 
@@ -150,6 +145,11 @@ void serve(Options& options) {
     std::unique_ptr<MetricsPort> metrics =
         options.metrics_port ? std::make_unique<MetricsPort>(options.metrics_bind, *options.metrics_port) : nullptr;
     read_files(options);
+    std::optional<EventLog> event_log;
+    if (!options.record_events.empty()) {
+        event_log.emplace(options.record_events, [](std::string const& problem) { spdlog::warn("{}", problem); });
+        options.server.loop.event_log = &*event_log;
+    }
     std::optional<LocalToken> local_token;
     if (options.local_token) {
         std::vector<std::string> addresses;
@@ -181,18 +181,14 @@ void serve(Options& options) {
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;
-    std::optional<EventLog> event_log;
-    if (!options.record_events.empty()) {
+    if (event_log) {
         StreamOptions const& stream = options.server.loop.stream;
-        event_log.emplace(
-            options.record_events,
-            ServedScene{{scene_files.begin(), scene_files.end()},
-                        options.environment ? std::filesystem::absolute(*options.environment).string() : "",
-                        loaded->clips,
-                        loaded->exposure,
-                        stream.bias,
-                        stream.batch_framelets});
-        options.server.loop.event_log = &*event_log;
+        event_log->begin({{scene_files.begin(), scene_files.end()},
+                          options.environment ? std::filesystem::absolute(*options.environment).string() : "",
+                          loaded->clips,
+                          loaded->exposure,
+                          stream.bias,
+                          stream.batch_framelets});
     }
     Server server(std::move(loaded), options.server, std::move(listener));
     // What asks the server, or tells it something, ends before it.

@@ -212,6 +212,33 @@ TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
     EXPECT_TRUE(server.process().running());
 }
 
+TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoServerFromStarting) {
+    TemporaryFolder folder;
+    std::string const pipe = (folder.path() / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string const file = folder.write("file", "no certificate\n");
+    for (std::vector<std::string> const& options : {std::vector<std::string>{"--token-file", pipe},
+                                                    {"--control-token-file", pipe},
+                                                    {"--record-events", pipe},
+                                                    {"--tls-cert", pipe, "--tls-key", file}}) {
+        std::vector<std::string> arguments{scene_file, "--port", "0"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        Process server(FRAMELET_SERVER, arguments);
+        EXPECT_EQ(server.wait(patience), 1) << options[0];
+        EXPECT_EQ(lines_in(server.errors()), 1u) << server.errors();
+        EXPECT_NE(server.errors().find(pipe), std::string::npos) << server.errors();
+    }
+}
+
+TEST(Unwelcome, ATokenMayComeOutOfAPipe) {
+    std::string const token = "0123456789abcdef0123456789abcdef";
+    TemporaryFolder folder;
+    ServerProcess const server = ServerProcess::of_program(
+        "/bin/bash", {"-c", "exec \"$0\" \"$1\" --port 0 --paused --token-file <(sleep 0.2; echo " + token + ")",
+                      FRAMELET_SERVER, scene_file});
+    EXPECT_EQ(connect_client(server, {"--token-file", folder.write("token", token)}), "");
+}
+
 TEST(Unwelcome, WhenTheServerIsToldToEndViewersHearOfIt) {
     ServerProcess server(scene_file, {"--paused", "--insecure"});
     RawViewer viewer(port_of(server));

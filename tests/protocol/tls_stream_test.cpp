@@ -244,6 +244,12 @@ TEST_F(TlsStream, FilesThatCannotBeUsed) {
     expect_input_error([&] { make_tls_server_context(certificate, identity_.locked_key_file()); }, "TLS key");
     expect_input_error([&] { make_tls_client_context("/nowhere.pem"); }, "TLS authority '/nowhere.pem'");
     expect_input_error([&] { make_tls_client_context(key); }, "private key, not a certificate");
+    std::string const pipe = certificate + ".pipe"; // nobody writes into it, and nobody waits for that
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    expect_input_error([&] { make_tls_server_context(pipe, key); }, "it is not a file");
+    expect_input_error([&] { make_tls_server_context(certificate, pipe); }, "it is not a file");
+    expect_input_error([&] { make_tls_client_context(pipe); }, "it is not a file");
+    expect_input_error([&] { certificate_fingerprint(pipe); }, "it is not a file");
 }
 
 } // namespace
