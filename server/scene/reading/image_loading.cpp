@@ -1,8 +1,6 @@
 #include "server/scene/reading/image_loading.h"
 
-#include <filesystem>
 #include <mutex>
-#include <system_error>
 
 #include <tbb/parallel_for.h>
 
@@ -24,10 +22,24 @@ std::vector<Index> new_indices(std::size_t count, auto const& keep) {
     return result;
 }
 
+std::vector<std::byte> read_file(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget) {
+    std::optional<RegularFile> const opened = folder.open(file);
+    std::vector<std::byte> bytes;
+    if (opened) {
+        budget.reserve(opened->bytes(), 1);
+        bytes.resize(opened->bytes());
+    }
+    if (!opened || !opened->read(bytes.data(), bytes.size())) {
+        throw InputError("cannot read image '" + file.string() + "': the file cannot be read");
+    }
+    return bytes;
+}
+
 } // namespace
 
-std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
-                                                        std::vector<std::string>& warnings, Progress const& progress) {
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, SceneFolder const& folder,
+                                                        ImportBudget& budget, std::vector<std::string>& warnings,
+                                                        Progress const& progress) {
     std::vector<std::shared_ptr<Picture const>> pictures(images.size());
     std::vector<std::string> problems(images.size());
     SizeCheck const reserve = [&](int width, int height) {
@@ -46,14 +58,9 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
             if (image.bytes.empty() && image.file.empty()) {
                 throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
             }
-            if (image.bytes.empty()) { // else they have been counted
-                std::error_code code; // where it is set, reading says so
-                std::uintmax_t const size = std::filesystem::file_size(image.file, code);
-                budget.reserve(code ? 0 : size, 1);
-            }
-            pictures[i] =
-                std::make_shared<Picture const>(image.bytes.empty() ? read_picture(image.file, reserve)
-                                                                    : read_picture(image.bytes, image.name, reserve));
+            pictures[i] = std::make_shared<Picture const>(
+                image.bytes.empty() ? read_picture(read_file(image.file, folder, budget), image.file.string(), reserve)
+                                    : read_picture(image.bytes, image.name, reserve)); // which have been counted
         } catch (SceneTooLarge const&) {
             throw;
         } catch (InputError const& error) {
