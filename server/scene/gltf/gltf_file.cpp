@@ -172,8 +172,9 @@ void check_buffer_views(Json const& accessors, Json const& meshes) {
 }
 
 /// Bytes that are reserved for an object and for a value of the JSON: what tinygltf makes of a material that is "{}",
-/// the largest, and of a number in a list.
-constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material), value_bytes = 64;
+/// the largest, and of a number in a list of `extras`, with what is parsed before that.
+constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material);
+constexpr std::uint64_t value_bytes = sizeof(tinygltf::Value) + 3 * sizeof(nlohmann::json);
 
 /// Checks what tinygltf does not, or says less well: the JSON's nesting, its version, extensions and buffer views.
 /// Reserves memory for what will be made of it, and notes how much of each buffer file is wanted: a file may be longer

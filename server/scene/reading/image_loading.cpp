@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/files/image_io.h"
+#include "common/files/picture_header.h"
 
 namespace framelet {
 namespace {
@@ -21,6 +22,19 @@ std::vector<Index> new_indices(std::size_t count, auto const& keep) {
     }
     return result;
 }
+
+/// Memory that is taken until the end of the scope.
+class Reserved {
+public:
+    Reserved(ImportBudget& budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) { budget.reserve(bytes, 1); }
+    ~Reserved() { budget_.give_back(bytes_); }
+    Reserved(Reserved const&) = delete;
+    Reserved& operator=(Reserved const&) = delete;
+
+private:
+    ImportBudget& budget_;
+    std::uint64_t const bytes_;
+};
 
 std::vector<std::byte> read_file(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget) {
     std::optional<RegularFile> const opened = folder.open(file);
@@ -58,9 +72,12 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
             if (image.bytes.empty() && image.file.empty()) {
                 throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
             }
+            std::vector<std::byte> const in_file =
+                image.bytes.empty() ? read_file(image.file, folder, budget) : std::vector<std::byte>();
+            auto const bytes = image.bytes.empty() ? std::span(in_file) : image.bytes; // else they have been counted
+            Reserved const beside(budget, bytes_beside(bytes));
             pictures[i] = std::make_shared<Picture const>(
-                image.bytes.empty() ? read_picture(read_file(image.file, folder, budget), image.file.string(), reserve)
-                                    : read_picture(image.bytes, image.name, reserve)); // which have been counted
+                read_picture(bytes, image.bytes.empty() ? image.file.string() : image.name, reserve));
         } catch (SceneTooLarge const&) {
             throw;
         } catch (InputError const& error) {
