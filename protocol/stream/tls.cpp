@@ -8,6 +8,7 @@
 
 #include <openssl/pem.h>
 #include <openssl/x509_vfy.h>
+#include <sys/stat.h>
 
 #include "common/error.h"
 #include "common/files/regular_file.h"
@@ -94,13 +95,22 @@ struct JudgedContext {
     CertificateJudge judge;
 };
 
+/// Lets the library go on where it is not known who has signed: what else may be wrong (the host, the time) it looks at
+/// after that.
+int pass_unknown_origin(int is_right, X509_STORE_CTX* store) {
+    return is_right == 1 || is_of_unknown_origin(X509_STORE_CTX_get_error(store)) ? 1 : 0;
+}
+
 bool is_trusted(X509_STORE_CTX* store, CertificateJudge const& judge) {
-    if (X509_verify_cert(store) == 1) {
+    X509_STORE_CTX_set_verify_cb(store, pass_unknown_origin);
+    if (X509_verify_cert(store) != 1) {
+        return false;
+    }
+    if (!is_of_unknown_origin(X509_STORE_CTX_get_error(store))) { // which stays from when it was passed
         judge("");
         return true;
     }
-    bool const trusted =
-        is_of_unknown_origin(X509_STORE_CTX_get_error(store)) && judge(fingerprint_of(X509_STORE_CTX_get0_cert(store)));
+    bool const trusted = judge(fingerprint_of(X509_STORE_CTX_get0_cert(store)));
     if (trusted) {
         X509_STORE_CTX_set_error(store, X509_V_OK);
     }
@@ -117,7 +127,24 @@ int verify(X509_STORE_CTX* store, void* judged) {
     }
 }
 
+/// Where an SSL keeps what `give_up_handshake_where` was given.
+int over_index() {
+    static int const index = SSL_get_ex_new_index(0, nullptr, nullptr, nullptr, nullptr);
+    return index;
+}
+
+int look_at_hello(SSL* ssl, int*, void*) {
+    auto const* const is_over = static_cast<std::atomic<bool> const*>(SSL_get_ex_data(ssl, over_index()));
+    return is_over != nullptr && *is_over ? SSL_CLIENT_HELLO_ERROR : SSL_CLIENT_HELLO_SUCCESS;
+}
+
 } // namespace
+
+void give_up_handshake_where(SSL* ssl, std::atomic<bool> const& is_over) {
+    if (SSL_set_ex_data(ssl, over_index(), const_cast<std::atomic<bool>*>(&is_over)) != 1) {
+        throw std::bad_alloc();
+    }
+}
 
 void require_host(SSL* ssl, std::string host) {
     SSL_set_verify(ssl, SSL_VERIFY_PEER, nullptr);
@@ -137,6 +164,7 @@ std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certifi
     boost::system::error_code error;
     // A key under a password is refused; otherwise the library would ask for it on the terminal.
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
+    SSL_CTX_set_client_hello_cb(context->native_handle(), look_at_hello, nullptr);
     RegularFile const certificate = opened("TLS certificate", certificate_file);
     context->use_certificate_chain_file(certificate.name(), error);
     require(error, "TLS certificate", certificate_file, certificate);
@@ -167,6 +195,11 @@ std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authori
     auto const judged = std::make_shared<JudgedContext>(JudgedContext{context, std::move(judge)});
     SSL_CTX_set_cert_verify_callback(context->native_handle(), verify, judged.get());
     return {judged, context.get()};
+}
+
+bool is_readable_by_all(std::string const& key_file) {
+    RegularFile const found(key_file);
+    return found && (found.mode() & S_IROTH) != 0;
 }
 
 std::string certificate_fingerprint(std::string const& certificate_file) {
