@@ -1,12 +1,12 @@
 #include "client/window/start_panel.h"
 
 #include <algorithm>
-#include <iostream>
 
 #include "client/processes/end_signals.h"
 #include "client/window/attempts.h"
 #include "client/window/overlay/overlay.h"
 #include "common/error.h"
+#include "common/program_line.h"
 
 namespace framelet {
 
@@ -55,7 +55,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             return std::move(*opened);
         }
         if (std::string why = opener.take_complaint(); !why.empty()) {
-            std::cerr << "framelet-viewer: " << why << std::endl;
+            print_line("framelet-viewer", why);
             if (start.needs_scene) {
                 return {};
             }

@@ -15,7 +15,8 @@
 #include <unistd.h>
 
 #include "common/error.h"
-#include "protocol/messages/text.h"
+#include "common/one_line.h"
+#include "protocol/messages/text_limits.h"
 
 namespace framelet {
 namespace {

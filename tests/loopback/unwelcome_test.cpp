@@ -239,6 +239,38 @@ TEST(Unwelcome, ATokenMayComeOutOfAPipe) {
     EXPECT_EQ(connect_client(server, {"--token-file", folder.write("token", token)}), "");
 }
 
+/// Else a connection would be 0, 1 or 2, and get what is meant for the log.
+TEST(Unwelcome, ClosedDescriptorsBecomeNoConnections) {
+    ServerProcess server = server_after("exec 0<&- 2>&-; ", {"--paused"});
+    EXPECT_EQ(connect_client(server), "");
+    for (char const* const number : {"0", "2"}) {
+        std::filesystem::path const file = "/proc/" + std::to_string(server.process().pid()) + "/fd/" + number;
+        EXPECT_EQ(std::filesystem::read_symlink(file), "/dev/null");
+    }
+}
+
+TEST(Unwelcome, AHangUpWhileTheSceneLoadsEndsNothing) {
+    TemporaryFolder folder;
+    std::filesystem::path const record = folder.path() / "record";
+    Process server(FRAMELET_SERVER, {scene_file, "--port", "0", "--paused", "--record", record.string()});
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(record); })); // before it begins to load
+    server.signal(SIGHUP);
+    EXPECT_TRUE(eventually(
+        [&] { return server.errors().find("loading the scene again") != std::string::npos || !server.running(); }));
+    EXPECT_TRUE(server.running());
+    EXPECT_NE(server.output().find("listening on"), std::string::npos);
+}
+
+TEST(Unwelcome, ViewersThatComeAndGoDoNotFillTheLog) {
+    ServerProcess server(scene_file, {"--paused", "--insecure"});
+    for (int i = 0; i < 300; ++i) {
+        RawViewer viewer(port_of(server));
+        ASSERT_TRUE(viewer.watch([](Message const& message) { return std::holds_alternative<Welcome>(message); }));
+    }
+    EXPECT_LT(lines_in(server.process().errors()), 300u) << server.process().errors();
+    EXPECT_NE(server.process().errors().find("viewer 1 connects"), std::string::npos);
+}
+
 TEST(Unwelcome, WhenTheServerIsToldToEndViewersHearOfIt) {
     ServerProcess server(scene_file, {"--paused", "--insecure"});
     RawViewer viewer(port_of(server));
