@@ -1,5 +1,4 @@
 // framelet-viewer: a window on a scene that framelet-server renders.
-#include <iostream>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -18,8 +17,10 @@
 #include "client/window/start_panel.h"
 #include "client/window/viewer.h"
 #include "common/command_line/program_failure.h"
+#include "common/command_line/standard_files.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
+#include "common/program_line.h"
 #include "protocol/stream/token.h"
 
 namespace {
@@ -49,6 +50,7 @@ void remember(framelet::Window const& window, framelet::ViewerMemory& memory) {
 // NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
     using namespace framelet;
+    open_standard_files();
     give_back_large_blocks();
     note_end_signals();
     ConnectionArguments arguments;
@@ -158,14 +160,14 @@ int main(int argc, char** argv) {
         }
         CanvasChoice choice = choose_canvas(parse_painter(painter));
         if (!choice.complaint.empty()) {
-            std::cerr << "framelet-viewer: " << choice.complaint << std::endl;
+            print_line("framelet-viewer", choice.complaint);
         }
         int const result =
             Viewer(window, std::move(first), options_for, opener, display, camera, memory, std::move(choice)).run();
         remember(window, memory);
         return result;
     } catch (std::exception const& error) {
-        std::cerr << "framelet-viewer: " << failure_text(error) << "\n";
+        print_line("framelet-viewer", failure_text(error));
         return 1;
     }
 }

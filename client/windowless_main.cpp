@@ -1,16 +1,18 @@
 // framelet-client: looks at a served scene without a window, writes what a person would have seen and what it measured.
-#include <iostream>
 #include <optional>
 
 #include "client/picture_size.h"
 #include "client/windowless/windowless_run.h"
 #include "common/command_line/program_failure.h"
+#include "common/command_line/standard_files.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
+#include "common/program_line.h"
 
 // NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
     using namespace framelet;
+    open_standard_files();
     give_back_large_blocks();
     WindowlessOptions options;
     CLI::App app("Looks at a scene that framelet-server renders, without a window: writes pictures and statistics.",
@@ -38,7 +40,7 @@ int main(int argc, char** argv) {
         run_windowless(options, connection, viewport, pattern);
         return 0;
     } catch (std::exception const& error) {
-        std::cerr << "framelet-client: " << failure_text(error) << "\n";
+        print_line("framelet-client", failure_text(error));
         return 1;
     }
 }

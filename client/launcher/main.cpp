@@ -1,10 +1,10 @@
 // framelet: shows a scene on this machine, by the two programs that do it across a network.
 #include <exception>
-#include <iostream>
 
 #include "client/launcher/options.h"
 #include "client/processes/child.h"
 #include "common/command_line/program_failure.h"
+#include "common/program_line.h"
 
 int main(int argc, char** argv) {
     auto const parsed = framelet::parse_options(argc, argv);
@@ -15,7 +15,7 @@ int main(int argc, char** argv) {
         auto const& call = std::get<framelet::ProgramCall>(parsed);
         framelet::become(framelet::find_program(call.program), call.arguments);
     } catch (std::exception const& error) {
-        std::cerr << "framelet: " << framelet::failure_text(error) << '\n';
+        framelet::print_line("framelet", framelet::failure_text(error));
         return 1;
     }
 }

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <thread>
 
+#include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -78,6 +79,10 @@ Child::Child(std::filesystem::path const& program, std::vector<std::string> cons
         }
         if (files.is_alone) {
             ::close_range(STDERR_FILENO + 1, ~0u, CLOSE_RANGE_CLOEXEC);
+        }
+        if (files.news) {
+            ::dup2(*files.news, news_descriptor);
+            ::fcntl(news_descriptor, F_SETFD, 0); // it may have been that one
         }
         ::signal(SIGPIPE, SIG_DFL); // whatever this program does on it
         ::execv(program.c_str(), argv.data());

@@ -22,7 +22,9 @@ struct ChildFiles {
     std::optional<int> output, errors;
     bool is_alone = false; ///< whatever else this program has open is not handed on
     std::optional<int> input = {};
+    std::optional<int> news = {}; ///< becomes `news_descriptor` there
 };
+inline constexpr int news_descriptor = 3;
 
 /// Another program at work. It is ended when this goes out of scope, and with the thread that started it, which is this
 /// program's main thread, however that ends.

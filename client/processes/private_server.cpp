@@ -6,12 +6,16 @@
 #include <chrono>
 #include <filesystem>
 #include <iostream>
+#include <memory>
 #include <string_view>
 #include <system_error>
 #include <utility>
 
-#include <fcntl.h>
+#include <poll.h>
 #include <unistd.h>
+
+#include "common/one_line.h"
+#include "common/pipe.h"
 
 namespace framelet {
 namespace {
@@ -33,6 +37,23 @@ std::optional<LoadProgress> load_progress_of(std::string const& line) {
     return error == std::errc() && rest == line.data() + end ? std::optional(out) : std::nullopt;
 }
 
+/// Reads what is there, and hands on the lines that are whole now; `rest` is what there is of the next. False at the
+/// end.
+bool read_lines(int descriptor, std::string& rest, std::function<void(std::string const&)> const& take) {
+    std::array<char, 4096> bytes;
+    ssize_t const count = ::read(descriptor, bytes.data(), bytes.size());
+    if (count <= 0) {
+        return count < 0 && errno == EINTR;
+    }
+    rest.append(bytes.data(), static_cast<std::size_t>(count));
+    std::size_t begin = 0;
+    for (std::size_t end; (end = rest.find('\n', begin)) != std::string::npos; begin = end + 1) {
+        take(rest.substr(begin, end - begin));
+    }
+    rest.erase(0, begin);
+    return true;
+}
+
 } // namespace
 
 PrivateServer::PrivateServer(std::vector<std::string> const& scenes, std::vector<std::string> const& options,
@@ -41,24 +62,17 @@ PrivateServer::PrivateServer(std::vector<std::string> const& scenes, std::vector
     std::filesystem::path const file = find_program(program);
     std::vector<std::string> arguments{"--port", "0"};
     arguments.insert(arguments.end(), options.begin(), options.end());
-    arguments.insert(arguments.end(), {"--progress-lines", "--log=text"}); // what is read here
+    arguments.insert(arguments.end(), {"--news", std::to_string(news_descriptor), "--log=text"}); // what is read here
     arguments.emplace_back("--"); // behind it, what looks like an option is none
     arguments.insert(arguments.end(), scenes.begin(), scenes.end());
-    std::array<int, 2> pipe{};
-    if (::pipe2(pipe.data(), O_CLOEXEC) != 0) {
-        throw std::system_error(errno, std::generic_category(), "cannot make a pipe");
-    }
-    try {
-        process_.emplace(file, arguments, ChildFiles{.output = pipe[1], .errors = pipe[1], .is_alone = true});
-    } catch (...) {
-        ::close(pipe[0]);
-        ::close(pipe[1]);
-        throw;
-    }
-    ::close(pipe[1]);
-    reader_ = std::thread([this, from = pipe[0]] {
-        read(from);
-        ::close(from);
+    auto news = std::make_unique<Pipe>(), words = std::make_unique<Pipe>();
+    process_.emplace(
+        file, arguments,
+        ChildFiles{.output = words->writing(), .errors = words->writing(), .is_alone = true, .news = news->writing()});
+    news->close_writing();
+    words->close_writing();
+    reader_ = std::thread([this, news = std::move(news), words = std::move(words)] {
+        read(news->reading(), words->reading());
         on_news_();
     });
 }
@@ -92,48 +106,44 @@ std::string PrivateServer::end_reason() {
                                                              : complaint_;
 }
 
-void PrivateServer::read(int descriptor) {
-    std::array<char, 4096> bytes;
-    std::string said;
-    for (;;) {
-        ssize_t const count = ::read(descriptor, bytes.data(), bytes.size());
-        if (count < 0 && errno == EINTR) {
-            continue;
+void PrivateServer::read(int news, int words) {
+    std::string of_news, of_words; // what is there of a line
+    std::array<pollfd, 2> wanted{{{news, POLLIN, 0}, {words, POLLIN, 0}}};
+    while (wanted[0].fd >= 0 || wanted[1].fd >= 0) {
+        if (::poll(wanted.data(), wanted.size(), -1) < 0) {
+            continue; // a signal
         }
-        if (count <= 0) {
-            return;
+        if (wanted[0].revents != 0) {
+            wanted[0].fd = read_lines(news, of_news, [this](std::string const& line) { take_news(line); }) ? news : -1;
         }
-        said.append(bytes.data(), static_cast<std::size_t>(count));
-        std::size_t begin = 0;
-        for (std::size_t end; (end = said.find('\n', begin)) != std::string::npos; begin = end + 1) {
-            take(said.substr(begin, end - begin));
+        if (wanted[1].revents != 0) {
+            wanted[1].fd = read_lines(words, of_words, [this](std::string const& line) { take(line); }) ? words : -1;
         }
-        said.erase(0, begin);
     }
 }
 
-void PrivateServer::take(std::string const& line) {
-    constexpr std::string_view listening = "listening on ", complaining = "framelet-server: ";
-    std::optional<LoadProgress> progress = load_progress_of(line);
-    bool const is_progress = progress.has_value();
-    bool is_news = is_progress;
+void PrivateServer::take_news(std::string const& line) {
+    constexpr std::string_view listening = "listening on ";
     {
         std::lock_guard const lock(mutex_);
-        if (is_progress) {
+        if (auto progress = load_progress_of(line)) {
             progress_ = std::move(progress);
-        } else if (line.starts_with(complaining)) {
-            complaint_ = line.substr(complaining.size()); // for whoever asks why it has ended
-            return;
         } else if (line.starts_with(listening) && !address_) {
             address_ = line.substr(listening.size());
-            is_news = true;
+        } else {
+            return;
         }
     }
-    if (!is_progress) {
-        std::cerr << line + '\n' << std::flush;
-    }
-    if (is_news) {
-        on_news_();
+    on_news_();
+}
+
+void PrivateServer::take(std::string const& line) {
+    constexpr std::string_view complaining = "framelet-server: ";
+    if (line.starts_with(complaining)) {
+        std::lock_guard const lock(mutex_);
+        complaint_ = line.substr(complaining.size()); // for whoever asks why it has ended
+    } else {
+        std::cerr << to_one_line(line) + '\n' << std::flush;
     }
 }
 

@@ -1,5 +1,6 @@
 // A server for one user: framelet-server on a free port of this machine. In: the files of a scene. Out: where it
-// listens, or the line that says why it does not. What else it prints goes to this program's standard error.
+// listens, which it says by a descriptor of its own, where no name of a file can stand; or the line that says why it
+// does not. What else it prints goes to this program's standard error.
 #pragma once
 
 #include <functional>
@@ -42,7 +43,8 @@ public:
 
 private:
     void read_to_the_end();
-    void read(int descriptor);
+    void read(int news, int words);
+    void take_news(std::string const& line);
     void take(std::string const& line);
 
     std::function<void()> const on_news_;

@@ -1,10 +1,14 @@
 #include "client/video/video_writer.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <climits>
 #include <csignal>
 #include <cstring>
 #include <utility>
 
+#include <poll.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "client/video/y4m.h"
@@ -13,8 +17,11 @@
 
 namespace framelet {
 
-VideoWriter::VideoWriter(int descriptor, Viewport size, PictureRate rate)
-    : descriptor_(descriptor), size_(size), rate_(rate), clock_(rate) {
+VideoWriter::VideoWriter(int descriptor, Viewport size, PictureRate rate, std::function<bool()> is_told_to_end)
+    : descriptor_(descriptor), size_(size), rate_(rate), is_told_to_end_(std::move(is_told_to_end)), clock_(rate) {
+    struct stat found {};
+    bool const is_pipe = ::fstat(descriptor, &found) == 0 && S_ISFIFO(found.st_mode);
+    most_bytes_ = is_pipe ? PIPE_BUF : SSIZE_MAX;
     std::signal(SIGPIPE, SIG_IGN);
     thread_ = std::thread([this] { run(); });
 }
@@ -109,9 +116,25 @@ void VideoWriter::run() {
     }
 }
 
+/// Waits until something can be written, or an error says that nothing can; false where nobody reads any more.
+bool VideoWriter::waits_for_room() const {
+    constexpr int look_milliseconds = 100, most_looks = 10;
+    pollfd out{descriptor_, POLLOUT, 0};
+    for (int looks = 0; ::poll(&out, 1, look_milliseconds) == 0;) {
+        if (is_told_to_end_() && ++looks == most_looks) {
+            return false;
+        }
+    }
+    return true;
+}
+
 bool VideoWriter::write(std::string const& bytes) {
     for (std::size_t done = 0; done < bytes.size();) {
-        ssize_t const written = ::write(descriptor_, bytes.data() + done, bytes.size() - done);
+        if (!waits_for_room()) {
+            return false;
+        }
+        std::size_t const count = std::min(bytes.size() - done, most_bytes_);
+        ssize_t const written = ::write(descriptor_, bytes.data() + done, count);
         if (written >= 0) {
             done += static_cast<std::size_t>(written);
         } else if (errno == EPIPE) {

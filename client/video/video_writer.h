@@ -6,6 +6,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <functional>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -21,8 +22,9 @@ namespace framelet {
 /// was shown in time or too many wait, and left out where several were.
 class VideoWriter : public FrameSink {
 public:
-    /// `descriptor` stays open. From then on the program ignores SIGPIPE: a reader that goes is an end reason.
-    VideoWriter(int descriptor, Viewport size, PictureRate rate);
+    /// `descriptor` stays open. From then on the program ignores SIGPIPE: a reader that goes is an end reason. Once
+    /// `is_told_to_end` says so, one that reads nothing for a second is as good as gone.
+    VideoWriter(int descriptor, Viewport size, PictureRate rate, std::function<bool()> is_told_to_end);
     ~VideoWriter() override;
 
     void show(ShownFrame const& frame) override;
@@ -40,12 +42,15 @@ private:
     void run();
     /// Writes all bytes; false where nobody reads any more. Throws InputError.
     bool write(std::string const& bytes);
+    bool waits_for_room() const;
     void stop();
     void throw_if_failed() const;
 
     int const descriptor_;
     Viewport const size_;
     PictureRate const rate_;
+    std::function<bool()> const is_told_to_end_;
+    std::size_t most_bytes_; ///< that are written at once without waiting, where there is room
     VideoClock clock_;
     bool is_new_ = true; ///< the picture has changed since the last one that got a place
     std::atomic<double> cpu_seconds_ = 0;

@@ -1,11 +1,11 @@
 #include "client/window/attempts.h"
 
-#include <iostream>
 #include <thread>
 #include <utility>
 
 #include "client/window/window.h"
 #include "common/error.h"
+#include "common/program_line.h"
 
 namespace framelet {
 
@@ -80,7 +80,7 @@ std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
 void Attempts::note(std::string const& failure) {
     if (failure_ != failure) {
         failure_ = failure;
-        std::cerr << "framelet-viewer: " << failure_ << (is_refused_ ? "" : "; waiting for it") << std::endl;
+        print_line("framelet-viewer", failure_ + (is_refused_ ? "" : "; waiting for it"));
     }
 }
 

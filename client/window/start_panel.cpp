@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <iostream>
 
 #include "client/processes/end_signals.h"
 #include "client/window/attempts.h"
@@ -11,6 +10,7 @@
 #include "client/window/overlay/help_text.h"
 #include "client/window/overlay/overlay.h"
 #include "common/error.h"
+#include "common/program_line.h"
 
 namespace framelet {
 
@@ -81,7 +81,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
             return std::move(*opened);
         }
         if (std::string why = opener.take_complaint(); !why.empty()) {
-            std::cerr << "framelet-viewer: " << why << std::endl;
+            print_line("framelet-viewer", why);
             if (start.needs_scene) {
                 return {};
             }

@@ -1,7 +1,6 @@
 #include "client/window/viewer.h"
 
 #include <algorithm>
-#include <iostream>
 #include <utility>
 
 #include "client/core/picture/display_timing.h"
@@ -11,6 +10,7 @@
 #include "client/window/overlay/key_table.h"
 #include "client/window/overlay/lacks.h"
 #include "common/error.h"
+#include "common/program_line.h"
 
 namespace framelet {
 
@@ -78,7 +78,7 @@ void Viewer::look_at_scene() {
         bookmark_ = -1;
         is_at_bookmark_ = false;
         if (!bookmarks_->complaint().empty()) {
-            std::cerr << "framelet-viewer: " << bookmarks_->complaint() << std::endl;
+            print_line("framelet-viewer", bookmarks_->complaint());
             say(bookmarks_->complaint(), long_note_seconds);
         }
         remember_exposure();
@@ -180,7 +180,7 @@ bool Viewer::make_picture(Clock::time_point shown_at) {
         } catch (CanvasError const& error) {
             painter_ = processor_paints(error.what());
             is_on_canvas_ = false;
-            std::cerr << "framelet-viewer: " << painter_.complaint << std::endl;
+            print_line("framelet-viewer", painter_.complaint);
         }
     }
     return core_->update_picture(picture_, changed_, shown_at);
@@ -272,12 +272,12 @@ void Viewer::watch_connection() {
             lost_ = std::move(*reason);
         }
         if (!lost_.empty()) {
-            std::cerr << "framelet-viewer: " << lost_ << std::endl;
+            print_line("framelet-viewer", lost_);
         }
     }
     std::optional<std::string> const interruption = core_->interruption();
     if (interruption && !interrupted_) {
-        std::cerr << "framelet-viewer: " << *interruption << "; trying to connect again" << std::endl;
+        print_line("framelet-viewer", *interruption + "; trying to connect again");
     }
     interrupted_ = interruption.has_value();
     if (core_->scene_number() != scene_number_) {
@@ -298,7 +298,7 @@ void Viewer::watch_opener() {
         adopt(std::move(opened->core));
     }
     if (std::string const complaint = opener_.take_complaint(); !complaint.empty()) {
-        std::cerr << "framelet-viewer: " << complaint << std::endl;
+        print_line("framelet-viewer", complaint);
         say(complaint, long_note_seconds);
     }
 }

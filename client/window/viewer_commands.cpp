@@ -2,7 +2,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <iomanip>
-#include <iostream>
 #include <sstream>
 #include <utility>
 
@@ -14,6 +13,7 @@
 #include "common/counted.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
+#include "common/program_line.h"
 
 namespace framelet {
 
@@ -384,7 +384,7 @@ void Viewer::toggle_recording() {
 void Viewer::watch_recording() {
     if (recorder_ && recorder_->progress().is_done) {
         std::string const result = result_text(recorder_->progress(), recorder_->path());
-        std::cerr << "framelet-viewer: " << result << std::endl;
+        print_line("framelet-viewer", result);
         say(result, long_note_seconds);
         recorder_.reset();
     }

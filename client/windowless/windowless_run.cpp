@@ -23,9 +23,11 @@
 #include "client/tev/tev_sender.h"
 #include "client/video/film_sink.h"
 #include "client/video/video_writer.h"
+#include "common/command_line/standard_output.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
+#include "common/program_line.h"
 
 namespace framelet {
 namespace {
@@ -57,10 +59,8 @@ void ask_clock(ClientCore& core, WindowlessOptions const& options, std::optional
         request.state.time = *options.seek;
     }
     if (request.set != 0 && !core.controls()) {
-        std::cerr << "framelet-client: another viewer controls the scene's clock: --play, --pause, --seek and what the "
-                     "camera file "
-                     "says of it do nothing"
-                  << std::endl;
+        print_line("framelet-client", "another viewer controls the scene's clock: --play, --pause, --seek and what the "
+                                      "camera file says of it do nothing");
     }
     if (request.set != 0) {
         core.request_clock(request);
@@ -78,9 +78,9 @@ void wait_until(ClientCore& core, Clock::time_point time) {
 bool tell_interruption(ClientCore const& core, bool interrupted) {
     std::optional<std::string> const reason = core.interruption();
     if (reason && !interrupted) {
-        std::cerr << "framelet-client: " << *reason << "; trying to connect again" << std::endl;
+        print_line("framelet-client", *reason + "; trying to connect again");
     } else if (!reason && interrupted && !core.end_reason()) {
-        std::cerr << "framelet-client: connected again" << std::endl;
+        print_line("framelet-client", "connected again");
     }
     return reason.has_value();
 }
@@ -88,7 +88,8 @@ bool tell_interruption(ClientCore const& core, bool interrupted) {
 FrameSinks make_sinks(WindowlessOptions const& options, std::optional<FramePattern> const& pattern, Viewport viewport) {
     FrameSinks sinks;
     if (options.output == standard_output) {
-        sinks.push_back(std::make_unique<VideoWriter>(STDOUT_FILENO, viewport, PictureRate::of(display_rate(options))));
+        sinks.push_back(std::make_unique<VideoWriter>(STDOUT_FILENO, viewport, PictureRate::of(display_rate(options)),
+                                                      is_told_to_end));
     } else if (is_film_name(options.output)) {
         sinks.push_back(std::make_unique<FilmSink>(options.output, viewport));
     } else if (pattern) {
@@ -115,7 +116,7 @@ double cpu_seconds_of_sinks(FrameSinks const& sinks) {
 bool tell_end_of_sinks(FrameSinks const& sinks) {
     for (std::unique_ptr<FrameSink> const& sink : sinks) {
         if (std::string const reason = sink->end_reason(); !reason.empty()) {
-            std::cerr << "framelet-client: " << reason << std::endl;
+            print_line("framelet-client", reason);
             return true;
         }
     }
@@ -204,11 +205,10 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
 /// Writes the contact sheet once its stills have come. Throws as `SheetMoments::take_stills`, and InputError where it
 /// cannot be written.
 void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file) {
-    std::cerr << "framelet-client: waiting for the stills of the contact sheet" << std::endl;
+    print_line("framelet-client", "waiting for the stills of the contact sheet");
     sheet.take_stills(core);
     if (sheet.pairs().empty()) {
-        std::cerr << "framelet-client: there is no contact sheet: the run ended before a quarter of --duration"
-                  << std::endl;
+        print_line("framelet-client", "there is no contact sheet: the run ended before a quarter of --duration");
         return;
     }
     write_png(file, contact_sheet(sheet.pairs()));
@@ -295,13 +295,16 @@ void run_windowless(WindowlessOptions const& options, ConnectionOptions const& c
     for (std::unique_ptr<FrameSink> const& sink : sinks) {
         sink->finish();
         if (std::string const result = sink->result(); !result.empty()) {
-            std::cerr << "framelet-client: " << result << std::endl;
+            print_line("framelet-client", result);
         }
     }
-    std::ostream& told = options.output == standard_output ? std::cerr : std::cout;
-    told << (options.json ? statistics_json(session.statistics, session.figures) + "\n"
-                          : statistics_summary(session.statistics, session.figures))
-         << std::flush;
+    std::string const told = options.json ? statistics_json(session.statistics, session.figures) + "\n"
+                                          : statistics_summary(session.statistics, session.figures);
+    if (options.output == standard_output) {
+        std::cerr << told << std::flush;
+    } else {
+        print_output(told);
+    }
     if (session.end_reason) {
         throw ConnectionError(*session.end_reason);
     }

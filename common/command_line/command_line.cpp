@@ -10,6 +10,7 @@
 #include "common/command_line/bash_completion.h"
 #include "common/command_line/man_page.h"
 #include "common/command_line/option_text.h"
+#include "common/program_line.h"
 #include "framelet_version.h"
 
 namespace framelet {
@@ -214,7 +215,7 @@ std::string unknown_text(CLI::App const& app) {
 }
 
 int print(CLI::App const& app, UsageProblem const& problem) {
-    std::cerr << app.get_name() << ": " << problem.text << '\n';
+    print_line(app.get_name(), problem.text);
     return problem.exit_code;
 }
 

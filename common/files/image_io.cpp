@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -16,6 +15,7 @@
 #include "common/error.h"
 #include "common/files/picture_header.h"
 #include "common/files/png_reader.h"
+#include "common/files/regular_file.h"
 #include "common/files/tga_palette.h"
 
 namespace framelet {
@@ -209,11 +209,9 @@ Picture read_named_png(std::span<std::byte const> bytes, std::string const& name
 }
 
 std::vector<std::byte> read_bytes(std::filesystem::path const& file) {
-    std::error_code code;
-    std::uintmax_t const size = std::filesystem::file_size(file, code); // an error for what is no regular file
-    std::vector<std::byte> bytes(code ? 0 : static_cast<std::size_t>(size));
-    if (code || !std::ifstream(file, std::ios::binary)
-                     .read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()))) {
+    RegularFile const opened(file);
+    std::vector<std::byte> bytes(static_cast<std::size_t>(opened.bytes()));
+    if (!opened || !opened.read(bytes.data(), bytes.size())) {
         fail(file.string(), "the file cannot be read");
     }
     return bytes;

@@ -40,22 +40,33 @@ bool may_be_tga(Bytes bytes) {
            is_one_of(little(bytes, 16, 1), 8, 15, 16, 24, 32) && (has_palette == 1 || !is_one_of(type, 1, 9));
 }
 
-/// A JPEG file is a row of segments; one of the frame headers among them has the size.
-std::optional<PictureSize> jpeg_size(Bytes bytes) {
-    for (std::size_t at = 2; at + 9 <= bytes.size();) {
+struct JpegFrame {
+    PictureSize size;
+    std::int64_t components = 0;
+    bool is_progressive = false;
+    std::int64_t first_scan_components = 0; ///< 0: there is no scan
+};
+
+/// A JPEG file is a row of segments, among them a frame header and the headers of scans.
+std::optional<JpegFrame> jpeg_frame(Bytes bytes) {
+    std::optional<JpegFrame> frame;
+    for (std::size_t at = 2; at + 5 <= bytes.size();) {
         std::int64_t const marker = little(bytes, at + 1, 1);
         if (bytes[at] != std::byte{0xff} || marker == 0xff) {
             ++at; // between segments, where libjpeg passes over what is there
             continue;
         }
         bool const is_frame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
-        if (is_frame) {
-            return PictureSize{big(bytes, at + 7), big(bytes, at + 5)};
+        if (is_frame && !frame && at + 9 <= bytes.size()) {
+            frame = JpegFrame{{big(bytes, at + 7), big(bytes, at + 5)}, little(bytes, at + 9, 1), (marker & 3) == 2, 0};
+        } else if (marker == 0xda && frame) {
+            frame->first_scan_components = little(bytes, at + 4, 1);
+            break;
         }
         bool const is_alone = marker <= 0x01 || (marker >= 0xd0 && marker <= 0xd8);
         at += 2 + (is_alone ? 0 : static_cast<std::size_t>(big(bytes, at + 2)));
     }
-    return std::nullopt;
+    return frame;
 }
 
 /// The first chunk has the size: of the canvas, or of the only frame, with or without loss.
@@ -130,8 +141,10 @@ char const* foreign_format(Bytes bytes) {
 
 std::optional<PictureSize> header_size(PictureFormat format, Bytes bytes) {
     switch (format) {
-    case PictureFormat::jpeg:
-        return jpeg_size(bytes);
+    case PictureFormat::jpeg: {
+        auto const frame = jpeg_frame(bytes);
+        return frame ? std::optional(frame->size) : std::nullopt;
+    }
     case PictureFormat::webp:
         return webp_size(bytes);
     case PictureFormat::bmp:
@@ -142,6 +155,17 @@ std::optional<PictureSize> header_size(PictureFormat format, Bytes bytes) {
     default:
         return std::nullopt;
     }
+}
+
+std::uint64_t bytes_beside(Bytes bytes) {
+    auto const frame = picture_format(bytes) == PictureFormat::jpeg ? jpeg_frame(bytes) : std::nullopt;
+    if (!frame || (!frame->is_progressive && frame->first_scan_components >= frame->components)) {
+        return 0;
+    }
+    auto const whole_blocks = [](std::int64_t side) { return static_cast<std::uint64_t>((side + 31) / 32 * 32); };
+    constexpr std::uint64_t coefficient_bytes = 2;
+    return whole_blocks(frame->size.width) * whole_blocks(frame->size.height) *
+           static_cast<std::uint64_t>(frame->components) * coefficient_bytes;
 }
 
 } // namespace framelet

@@ -26,4 +26,8 @@ struct PictureSize {
 /// The size that the header of a JPEG, WebP, TGA or BMP file gives; nothing where it has none.
 std::optional<PictureSize> header_size(PictureFormat format, std::span<std::byte const> bytes);
 
+/// Bytes that are taken beside the picture while it is decoded: the coefficients of a JPEG whose parts come one after
+/// the other. 0 for what is none of these formats.
+std::uint64_t bytes_beside(std::span<std::byte const> bytes);
+
 } // namespace framelet

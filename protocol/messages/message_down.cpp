@@ -4,7 +4,7 @@
 
 #include "common/error.h"
 #include "protocol/messages/message_wire.h"
-#include "protocol/messages/text.h"
+#include "protocol/messages/text_limits.h"
 #include "protocol/messages/tile_list.h"
 
 namespace framelet {

@@ -1,6 +1,6 @@
 #include "common/error.h"
+#include "common/one_line.h"
 #include "protocol/messages/message_wire.h"
-#include "protocol/messages/text.h"
 
 namespace framelet {
 

@@ -2,7 +2,7 @@
 
 #include "common/error.h"
 #include "protocol/messages/message_wire.h"
-#include "protocol/messages/text.h"
+#include "protocol/messages/text_limits.h"
 
 namespace framelet {
 

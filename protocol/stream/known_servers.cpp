@@ -1,9 +1,11 @@
 #include "protocol/stream/known_servers.h"
 
+#include <algorithm>
 #include <fstream>
 #include <optional>
 #include <sstream>
 
+#include <boost/asio/ip/address.hpp>
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -16,12 +18,30 @@ namespace {
 /// Stands in place of a fingerprint where an authority vouches for the certificate.
 constexpr char const* vouched = "authorities";
 
+/// The same for all spellings of an address.
+std::string canonical(std::string server) {
+    std::ranges::transform(server, server.begin(), [](char c) { return 'A' <= c && c <= 'Z' ? char(c + 32) : c; });
+    std::size_t const colon = server.rfind(':');
+    std::string host = server.substr(0, colon);
+    if (host.starts_with('[') && host.ends_with(']')) {
+        host = host.substr(1, host.size() - 2);
+    }
+    boost::system::error_code error;
+    auto const address = boost::asio::ip::make_address(host, error);
+    if (!error) {
+        host = address.to_string();
+    } else if (host.ends_with('.')) { // says that the name is whole
+        host.pop_back();
+    }
+    return host + (colon == std::string::npos ? "" : server.substr(colon));
+}
+
 std::optional<std::string> find(std::filesystem::path const& file, std::string const& server) {
     std::ifstream lines(file);
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         std::string name, known;
-        if (words >> name >> known && name == server) {
+        if (words >> name >> known && canonical(name) == canonical(server)) {
             return known;
         }
     }

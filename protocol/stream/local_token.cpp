@@ -21,11 +21,12 @@ std::string name_prefix() {
     return "token-" + std::string(machine.data()) + "-";
 }
 
-/// Lock of a folder: while it lives, no other server of this user changes the folder.
+/// Lock of a folder: while it lives, no other server of this user changes the folder. It is a file that nobody else can
+/// open: whoever may read the folder could lock that for good.
 class FolderLock {
 public:
     explicit FolderLock(std::filesystem::path const& folder)
-        : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+        : descriptor_(::open((folder / "lock").c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_CLOEXEC, S_IRUSR | S_IWUSR)) {
         ::flock(descriptor_, LOCK_EX);
     }
     ~FolderLock() { ::close(descriptor_); }

@@ -13,12 +13,15 @@
 #include <type_traits>
 #include <utility>
 
+#include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/bind_executor.hpp>
 #include <boost/asio/dispatch.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/read.hpp>
 #include <boost/asio/ssl/stream.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <sys/socket.h>
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
@@ -27,6 +30,7 @@
 #include "protocol/stream/message_frame.h"
 #include "protocol/stream/outbox.h"
 #include "protocol/stream/stream_reason.h"
+#include "protocol/stream/tls.h"
 
 namespace framelet {
 
@@ -43,10 +47,16 @@ public:
     static constexpr std::chrono::seconds ending_time{1};
     static constexpr bool secure = std::is_same_v<Stream, asio::ssl::stream<Socket>>;
 
-    /// `peer`: address of the other side. `role` has a meaning for TLS only.
-    SocketStream(Stream stream, std::string peer, asio::ssl::stream_base::handshake_type role)
-        : stream_(std::move(stream)), executor_(stream_.get_executor()), handshake_timer_(executor_),
-          ending_timer_(executor_), role_(role), peer_(std::move(peer)) {}
+    /// `peer`: address of the other side. `role` and `handshakes`, by which the handshake is computed, have a meaning
+    /// for TLS only.
+    SocketStream(Stream stream, std::string peer, asio::ssl::stream_base::handshake_type role,
+                 asio::any_io_executor handshakes)
+        : stream_(std::move(stream)), executor_(stream_.get_executor()), handshakes_(std::move(handshakes)),
+          handshake_timer_(executor_), ending_timer_(executor_), role_(role), peer_(std::move(peer)) {
+        if constexpr (secure) {
+            give_up_handshake_where(stream_.native_handle(), finished_);
+        }
+    }
 
     void start(Handlers handlers, std::size_t max_body) override {
         FRAMELET_CHECK(!started_);
@@ -115,7 +125,7 @@ private:
     /// steps is lost where memory is missing for one of them, without having been called.
     class Awaited {
     public:
-        Awaited(std::shared_ptr<SocketStream> connection, int SocketStream::*count)
+        Awaited(std::shared_ptr<SocketStream> connection, std::atomic<int> SocketStream::*count)
             : connection_(std::move(connection)), count_(count) {
             ++(connection_.get()->*count_);
         }
@@ -129,7 +139,7 @@ private:
 
     private:
         std::shared_ptr<SocketStream> connection_; ///< null: it has been moved from
-        int SocketStream::*count_;
+        std::atomic<int> SocketStream::*count_;
     };
     Awaited reading() { return {self(), &SocketStream::awaited_reads_}; }
     Awaited writing() { return {self(), &SocketStream::awaited_writes_}; }
@@ -163,16 +173,27 @@ private:
                 }
             });
         });
-        stream_.async_handshake(role_, [self = reading()](Error error) {
-            self->handshake_timer_.cancel();
-            self->contain([&] {
-                if (error) {
-                    self->lose(handshake_reason(error, self->stream_.native_handle()));
-                } else {
-                    self->open();
-                }
+        computes_ = true;
+        auto done = [self = reading()](Error error) mutable {
+            std::string reason = error ? handshake_reason(error, self->stream_.native_handle()) : std::string();
+            asio::any_io_executor const executor = self->executor_;
+            asio::post(executor, [self = std::move(self), reason = std::move(reason)] {
+                self->computes_ = false;
+                self->handshake_timer_.cancel();
+                self->contain([&] { self->end_handshake(reason); });
             });
-        });
+        };
+        stream_.async_handshake(role_, asio::bind_executor(handshakes_, std::move(done)));
+    }
+
+    void end_handshake(std::string const& reason) {
+        if (finished_) {
+            close_socket();
+        } else if (!reason.empty()) {
+            lose(reason);
+        } else {
+            open();
+        }
     }
 
     void open() {
@@ -408,6 +429,10 @@ private:
         if (finished_ || ending_) {
             return;
         }
+        if (shakes_hands_ && !open_) { // nothing can be said yet, and what cannot is not worth a handshake
+            finish();
+            return;
+        }
         ending_ = true;
         ending_timer_.expires_after(ending_time);
         ending_timer_.async_wait([self = self()](Error aborted) {
@@ -442,16 +467,24 @@ private:
         finished_ = true;
         handshake_timer_.cancel();
         ending_timer_.cancel();
-        Error ignored;
-        stream_.lowest_layer().close(ignored);
+        if (computes_) { // the socket is in use there, but will be no more soon
+            ::shutdown(stream_.lowest_layer().native_handle(), SHUT_RDWR);
+        } else {
+            close_socket();
+        }
         outbox_.abandon();
         if (!writing_) {
             outbox_.release();
         }
     }
 
+    void close_socket() {
+        Error ignored;
+        stream_.lowest_layer().close(ignored);
+    }
+
     Stream stream_;
-    asio::any_io_executor const executor_;
+    asio::any_io_executor const executor_, handshakes_;
     asio::steady_timer handshake_timer_, ending_timer_;
     asio::ssl::stream_base::handshake_type const role_;
     std::string const peer_;
@@ -460,8 +493,10 @@ private:
     std::atomic<bool> giving_up_ = false; ///< nothing more is sent, for a reason that both sides are about to be told
     Outbox outbox_;
 
+    std::atomic<int> awaited_reads_ = 0, awaited_writes_ = 0; ///< handlers that are still to be called
+    std::atomic<bool> finished_ = false; ///< set on the io_context's thread only
+
     // What follows is only for the io_context's thread.
-    int awaited_reads_ = 0, awaited_writes_ = 0; ///< handlers that are still to be called
     std::size_t max_body_ = 0;
     FramePrefix prefix_{};
     Bytes body_; ///< room for the largest message so far
@@ -473,7 +508,7 @@ private:
     bool unwritable_ = false; ///< the socket takes no more
     bool ending_ = false; ///< no message is read or queued any more
     bool peer_done_ = false; ///< nothing more will arrive
-    bool finished_ = false;
+    bool computes_ = false; ///< `handshakes_` has the socket
     bool cut_ = false;
 };
 

@@ -49,10 +49,12 @@ void require_error_queue() {
     }
 }
 
-std::shared_ptr<FramedStream> secure_stream(SecureStream stream, asio::ssl::stream_base::handshake_type role) {
+std::shared_ptr<FramedStream> secure_stream(SecureStream stream, asio::ssl::stream_base::handshake_type role,
+                                            asio::any_io_executor handshakes) {
     set_options(stream.next_layer());
     std::string peer = address_of(stream.next_layer());
-    return std::make_shared<SocketStream<SecureStream>>(std::move(stream), std::move(peer), role);
+    return std::make_shared<SocketStream<SecureStream>>(std::move(stream), std::move(peer), role,
+                                                        std::move(handshakes));
 }
 
 } // namespace
@@ -61,13 +63,14 @@ std::shared_ptr<FramedStream> plain_stream(StreamSocket socket) {
     set_options(socket);
     std::string peer = address_of(socket);
     return std::make_shared<SocketStream<StreamSocket>>(std::move(socket), std::move(peer),
-                                                        asio::ssl::stream_base::client);
+                                                        asio::ssl::stream_base::client, asio::any_io_executor());
 }
 
-std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
-                                                std::shared_ptr<asio::ssl::context> const& context) {
+std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
+                                                asio::any_io_executor handshakes) {
     require_error_queue();
-    return secure_stream(SecureStream(std::move(socket), *context), asio::ssl::stream_base::server);
+    return secure_stream(SecureStream(std::move(socket), *context), asio::ssl::stream_base::server,
+                         std::move(handshakes));
 }
 
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
@@ -75,7 +78,8 @@ std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared
     require_error_queue();
     SecureStream stream(std::move(socket), *context);
     require_host(stream.native_handle(), host);
-    return secure_stream(std::move(stream), asio::ssl::stream_base::client);
+    asio::any_io_executor own = stream.get_executor();
+    return secure_stream(std::move(stream), asio::ssl::stream_base::client, std::move(own));
 }
 
 } // namespace framelet

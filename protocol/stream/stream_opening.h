@@ -4,6 +4,7 @@
 #include <memory>
 #include <string>
 
+#include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/context.hpp>
@@ -18,10 +19,12 @@ using StreamSocket = boost::asio::ip::tcp::socket;
 /// short.
 std::shared_ptr<FramedStream> plain_stream(StreamSocket socket);
 /// Make a stream over TLS, as the server or as the client; `host` is the name or the address that the certificate is
-/// checked against (InputError where it is neither). Throw std::bad_alloc or std::system_error where there is no
-/// memory.
+/// checked against (InputError where it is neither). A server's handshake is computed by `handshakes`, an executor of
+/// one thread; for a connection that has ended by then it is not. Throw std::bad_alloc or std::system_error where there
+/// is no memory.
 std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket,
-                                                std::shared_ptr<boost::asio::ssl::context> const& context);
+                                                std::shared_ptr<boost::asio::ssl::context> const& context,
+                                                boost::asio::any_io_executor handshakes);
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket,
                                                 std::shared_ptr<boost::asio::ssl::context> const& context,
                                                 std::string const& host);

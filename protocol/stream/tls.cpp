@@ -1,7 +1,6 @@
 #include "protocol/stream/tls.h"
 
 #include <array>
-#include <filesystem>
 #include <fstream>
 #include <memory>
 #include <new>
@@ -9,8 +8,10 @@
 
 #include <openssl/pem.h>
 #include <openssl/x509_vfy.h>
+#include <sys/stat.h>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 
 namespace framelet {
 namespace {
@@ -44,17 +45,26 @@ bool holds(std::string const& file, std::string const& kind) {
     return false;
 }
 
-void require(boost::system::error_code const& error, std::string const& what, std::string const& file) {
+void require(boost::system::error_code const& error, std::string const& what, std::string const& file,
+             RegularFile const& opened) {
     if (!error) {
         return;
     }
     bool const wants_key = what == "TLS key";
-    bool const swapped = std::filesystem::is_regular_file(file) &&
-                         holds(file, wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
-                         !holds(file, wants_key ? "PRIVATE KEY" : "CERTIFICATE");
+    bool const swapped = holds(opened.name(), wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
+                         !holds(opened.name(), wants_key ? "PRIVATE KEY" : "CERTIFICATE");
     std::string const mistaken = wants_key ? "it is a certificate, not a private key: give the key here"
                                            : "it is a private key, not a certificate: give the certificate here";
     throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
+}
+
+/// Throws InputError where there is no such file: a library would wait for a pipe.
+RegularFile opened(std::string const& what, std::string const& file) {
+    RegularFile found(file);
+    if (!found) {
+        throw InputError(what + " '" + file + "' cannot be used: " + found.problem());
+    }
+    return found;
 }
 
 /// Throws std::bad_alloc where there is no memory for it.
@@ -85,13 +95,22 @@ struct JudgedContext {
     CertificateJudge judge;
 };
 
+/// Lets the library go on where it is not known who has signed: what else may be wrong (the host, the time) it looks at
+/// after that.
+int pass_unknown_origin(int is_right, X509_STORE_CTX* store) {
+    return is_right == 1 || is_of_unknown_origin(X509_STORE_CTX_get_error(store)) ? 1 : 0;
+}
+
 bool is_trusted(X509_STORE_CTX* store, CertificateJudge const& judge) {
-    if (X509_verify_cert(store) == 1) {
+    X509_STORE_CTX_set_verify_cb(store, pass_unknown_origin);
+    if (X509_verify_cert(store) != 1) {
+        return false;
+    }
+    if (!is_of_unknown_origin(X509_STORE_CTX_get_error(store))) { // which stays from when it was passed
         judge("");
         return true;
     }
-    bool const trusted =
-        is_of_unknown_origin(X509_STORE_CTX_get_error(store)) && judge(fingerprint_of(X509_STORE_CTX_get0_cert(store)));
+    bool const trusted = judge(fingerprint_of(X509_STORE_CTX_get0_cert(store)));
     if (trusted) {
         X509_STORE_CTX_set_error(store, X509_V_OK);
     }
@@ -108,7 +127,24 @@ int verify(X509_STORE_CTX* store, void* judged) {
     }
 }
 
+/// Where an SSL keeps what `give_up_handshake_where` was given.
+int over_index() {
+    static int const index = SSL_get_ex_new_index(0, nullptr, nullptr, nullptr, nullptr);
+    return index;
+}
+
+int look_at_hello(SSL* ssl, int*, void*) {
+    auto const* const is_over = static_cast<std::atomic<bool> const*>(SSL_get_ex_data(ssl, over_index()));
+    return is_over != nullptr && *is_over ? SSL_CLIENT_HELLO_ERROR : SSL_CLIENT_HELLO_SUCCESS;
+}
+
 } // namespace
+
+void give_up_handshake_where(SSL* ssl, std::atomic<bool> const& is_over) {
+    if (SSL_set_ex_data(ssl, over_index(), const_cast<std::atomic<bool>*>(&is_over)) != 1) {
+        throw std::bad_alloc();
+    }
+}
 
 void require_host(SSL* ssl, std::string host) {
     SSL_set_verify(ssl, SSL_VERIFY_PEER, nullptr);
@@ -128,11 +164,14 @@ std::shared_ptr<ssl::context> make_tls_server_context(std::string const& certifi
     boost::system::error_code error;
     // A key under a password is refused; otherwise the library would ask for it on the terminal.
     context->set_password_callback([](std::size_t, ssl::context::password_purpose) { return std::string(); }, error);
-    context->use_certificate_chain_file(certificate_file, error);
-    require(error, "TLS certificate", certificate_file);
+    SSL_CTX_set_client_hello_cb(context->native_handle(), look_at_hello, nullptr);
+    RegularFile const certificate = opened("TLS certificate", certificate_file);
+    context->use_certificate_chain_file(certificate.name(), error);
+    require(error, "TLS certificate", certificate_file, certificate);
     // This also checks that the key is the certificate's.
-    context->use_private_key_file(key_file, ssl::context::pem, error);
-    require(error, "TLS key", key_file);
+    RegularFile const key = opened("TLS key", key_file);
+    context->use_private_key_file(key.name(), ssl::context::pem, error);
+    require(error, "TLS key", key_file, key);
     return context;
 }
 
@@ -142,10 +181,13 @@ std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authori
     boost::system::error_code error;
     if (authority_file.empty()) {
         context->set_default_verify_paths(error);
-        require(error, "TLS authorities", "of the system");
+        if (error) {
+            throw InputError("the system's TLS authorities cannot be used: " + error.message());
+        }
     } else {
-        context->load_verify_file(authority_file, error);
-        require(error, "TLS authority", authority_file);
+        RegularFile const authority = opened("TLS authority", authority_file);
+        context->load_verify_file(authority.name(), error);
+        require(error, "TLS authority", authority_file, authority);
     }
     if (!judge) {
         return context;
@@ -155,8 +197,14 @@ std::shared_ptr<ssl::context> make_tls_client_context(std::string const& authori
     return {judged, context.get()};
 }
 
+bool is_readable_by_all(std::string const& key_file) {
+    RegularFile const found(key_file);
+    return found && (found.mode() & S_IROTH) != 0;
+}
+
 std::string certificate_fingerprint(std::string const& certificate_file) {
-    std::unique_ptr<BIO, decltype(&BIO_free)> const file(BIO_new_file(certificate_file.c_str(), "r"), BIO_free);
+    RegularFile const found = opened("TLS certificate", certificate_file);
+    std::unique_ptr<BIO, decltype(&BIO_free)> const file(BIO_new_file(found.name().c_str(), "r"), BIO_free);
     std::unique_ptr<X509, decltype(&X509_free)> const certificate(
         file ? PEM_read_bio_X509(file.get(), nullptr, nullptr, nullptr) : nullptr, X509_free);
     if (!certificate) {

@@ -1,15 +1,23 @@
 #include "protocol/stream/token.h"
 
+#include <algorithm>
 #include <array>
-#include <fstream>
+#include <cerrno>
+#include <chrono>
 #include <stdexcept>
+#include <string>
 #include <utility>
+
+#include <fcntl.h>
 
 #include <openssl/crypto.h>
 #include <openssl/rand.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include "common/error.h"
-#include "protocol/messages/text.h"
+#include "common/one_line.h"
+#include "protocol/messages/text_limits.h"
 
 namespace framelet {
 namespace {
@@ -19,6 +27,50 @@ void fill_randomly(unsigned char* bytes, std::size_t count) {
     if (RAND_bytes(bytes, static_cast<int>(count)) != 1) {
         throw std::runtime_error("the system has no random numbers or no memory left");
     }
+}
+
+/// How long a pipe may take to say its first line: a program that makes the token needs a moment, and one that says
+/// nothing would keep a server from starting for good.
+constexpr std::chrono::seconds patience{5};
+
+struct OpenFile {
+    explicit OpenFile(std::filesystem::path const& file)
+        : descriptor(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
+    ~OpenFile() {
+        if (descriptor >= 0) {
+            ::close(descriptor);
+        }
+    }
+    OpenFile(OpenFile const&) = delete;
+    OpenFile& operator=(OpenFile const&) = delete;
+    int const descriptor;
+};
+
+/// The beginning of a file or a pipe: a line, all there is, or more than a line may have. Throws InputError where it
+/// cannot be read; `what` is for its message.
+std::string read_beginning(std::filesystem::path const& file, std::string const& what) {
+    using std::chrono::steady_clock;
+    OpenFile const open(file);
+    auto const end = steady_clock::now() + patience;
+    std::string text;
+    std::array<char, 512> some;
+    while (text.size() < max_token_bytes + some.size() && text.find('\n') == std::string::npos) {
+        auto const left = std::chrono::ceil<std::chrono::milliseconds>(end - steady_clock::now());
+        pollfd wanted{open.descriptor, POLLIN, 0}; // one that has not been opened is passed over
+        if (open.descriptor >= 0 && ::poll(&wanted, 1, std::max(0, static_cast<int>(left.count()))) == 0) {
+            throw InputError(what + " cannot be read: no line has come out of it for " +
+                             std::to_string(patience.count()) + " s");
+        }
+        ssize_t const bytes = ::read(open.descriptor, some.data(), some.size());
+        if (bytes < 0 && errno != EINTR && errno != EAGAIN) {
+            throw InputError(what + " cannot be read");
+        }
+        if (bytes == 0) {
+            break;
+        }
+        text.append(some.data(), static_cast<std::size_t>(std::max<ssize_t>(bytes, 0)));
+    }
+    return text;
 }
 
 } // namespace
@@ -61,19 +113,13 @@ std::string token_in(std::string line, std::string const& what) {
 }
 
 std::string read_token_file(std::filesystem::path const& file) {
-    std::ifstream stream(file, std::ios::binary);
-    // A little more than allowed is read, so that a file that never ends (a device) is refused as well.
-    std::string text(max_token_bytes + 256, '\0');
-    stream.read(text.data(), static_cast<std::streamsize>(text.size()));
-    text.resize(static_cast<std::size_t>(stream.gcount()));
-    if (text.empty() && !stream.eof()) {
-        throw InputError("token file '" + file.string() + "' cannot be read");
-    }
+    std::string const what = "token file '" + file.string() + "'";
+    std::string const text = read_beginning(file, what);
     std::string line = text.substr(0, text.find('\n'));
     if (line.find_first_not_of(" \t\r") == std::string::npos) {
-        throw InputError("token file '" + file.string() + "' has an empty first line; put the token there");
+        throw InputError(what + " has an empty first line; put the token there");
     }
-    return token_in(std::move(line), "token file '" + file.string() + "': the first line");
+    return token_in(std::move(line), what + ": the first line");
 }
 
 } // namespace framelet

@@ -28,7 +28,7 @@ bool same_token(std::string_view left, std::string_view right);
 std::string token_in(std::string line, std::string const& what);
 
 /// Reads a token: the first line of `file` without the white space around it. InputError where the file cannot be read,
-/// or the line is empty or none of `token_in`.
+/// is a pipe out of which no line comes for 5 s, or the line is empty or none of `token_in`.
 std::string read_token_file(std::filesystem::path const& file);
 
 } // namespace framelet

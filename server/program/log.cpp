@@ -18,6 +18,8 @@
 
 #include "common/counted.h"
 #include "common/error.h"
+#include "common/one_line.h"
+#include "common/program_line.h"
 
 namespace framelet {
 namespace {
@@ -46,8 +48,8 @@ public:
     std::unique_ptr<spdlog::formatter> clone() const override { return std::make_unique<JsonFormatter>(); }
 };
 
-/// Standard error, which nobody waits for: while whoever should read it does not, lines are dropped and counted. The
-/// loop and the network write them, and would stand still with it.
+/// Standard error, a printable line at a time, which nobody waits for: while whoever should read it does not, lines are
+/// dropped and counted. The loop and the network write them, and would stand still with it.
 class UnwaitedSink final : public spdlog::sinks::stderr_color_sink_mt {
 public:
     void log(spdlog::details::log_msg const& message) override {
@@ -57,7 +59,8 @@ public:
             ansicolor_stderr_sink::log({message.time, {}, message.logger_name, spdlog::level::warn, note});
         }
         if (takes_a_line()) {
-            ansicolor_stderr_sink::log(message);
+            std::string const line = to_one_line({message.payload.data(), message.payload.size()});
+            ansicolor_stderr_sink::log({message.time, {}, message.logger_name, message.level, line});
         } else {
             ++dropped_;
         }
@@ -101,9 +104,9 @@ void open_log(LogFormat format, bool quiet) {
 
 void log_end(LogFormat format, std::string_view why) {
     if (format == LogFormat::json) {
-        std::cerr << json_log_line(spdlog::log_clock::now(), "error", why);
+        std::cerr << json_log_line(spdlog::log_clock::now(), "error", to_one_line(why));
     } else {
-        std::cerr << "framelet-server: " << why << '\n';
+        print_line("framelet-server", why);
     }
 }
 

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdlib>
 #include <exception>
-#include <fstream>
 #include <iostream>
 #include <iterator>
 #include <memory>
@@ -18,6 +17,8 @@
 #include <unistd.h>
 
 #include "common/command_line/program_failure.h"
+#include "common/command_line/standard_files.h"
+#include "common/command_line/standard_output.h"
 #include "common/counted.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
@@ -40,7 +41,7 @@
 namespace framelet {
 namespace {
 
-/// Reads the tokens, and tries the certificate and the recording. Throws InputError where a file is of no use; to find
+/// Reads the tokens, and tries the certificate. Throws InputError where a file is of no use; to find
 /// that out only when it is needed could take as long as the scene does.
 void read_files(Options& options) {
     ServerOptions& server = options.server;
@@ -52,10 +53,10 @@ void read_files(Options& options) {
     }
     if (!server.tls_certificate.empty()) {
         make_tls_server_context(server.tls_certificate, server.tls_key);
-    }
-    if (!options.record_events.empty() && !std::ofstream(options.record_events, std::ios::app)) {
-        throw InputError("cannot write '" + options.record_events.string() +
-                         "': give --record-events a file in a folder that exists");
+        if (is_readable_by_all(server.tls_key)) {
+            spdlog::warn("every user of this machine can read --tls-key '{}': take that right from others (chmod o=)",
+                         server.tls_key);
+        }
     }
 }
 
@@ -63,14 +64,16 @@ std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import)
     return import.clips.empty() ? default_clips(scene) : clips_named(scene, import.clips);
 }
 
-Progress loading_bar(Options const& options) {
-    return make_progress_bar(options.quiet || options.log == LogFormat::json); // whose lines it would stand among
+/// Progress for people, or for the program that has started this one.
+Progress report(Options const& options) {
+    bool const is_unwanted = options.quiet || options.log == LogFormat::json; // whose lines it would stand among
+    return options.news ? make_progress_lines(*options.news) : make_progress_bar(is_unwanted);
 }
 
 /// From now on this process ends with the one that has started it and waits for what it says.
-void end_with_who_asked() {
+void end_with_who_asked(int news) {
     ::prctl(PR_SET_PDEATHSIG, SIGKILL);
-    pollfd told{STDOUT_FILENO, 0, 0};
+    pollfd told{news, 0, 0};
     if (::poll(&told, 1, 0) > 0 && (told.revents & POLLERR) != 0) { // it has ended before that
         std::_Exit(1);
     }
@@ -78,14 +81,14 @@ void end_with_who_asked() {
 
 /// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
 /// asks about.
-void print_info(Options const& options) {
-    if (options.progress_lines) {
-        end_with_who_asked();
+void print_info(Options options) {
+    if (options.news) {
+        end_with_who_asked(*options.news);
+        options.import.checker.clear(); // this is it
     }
-    Scene const scene = import_scenes(
-        options.scenes, options.progress_lines ? make_progress_lines() : loading_bar(options), options.import);
+    Scene const scene = import_scenes(options.scenes, report(options), options.import);
     std::vector<Index> const clips = chosen_clips(scene, options.import);
-    std::cout << (options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips)) << std::flush;
+    print_output(options.json ? scene_summary_json(scene, clips) : scene_summary_text(scene, clips));
 }
 
 /// Prints how to serve each scene below the folder, a line each. Throws InputError where there is none.
@@ -96,14 +99,14 @@ void list_scenes(std::filesystem::path const& folder, std::string const& command
                          "': name a scene file, or a folder that has some");
     }
     for (std::filesystem::path const& file : files) {
-        std::cout << command << " " << shell_word(file.string()) << '\n';
+        print_output(command + " " + shell_word(file.string()) + "\n");
     }
 }
 
 /// True where scenes are asked for that a folder has, by a person: whoever else starts this program wants a scene.
 bool asks_for_list(Options const& options) {
     std::error_code code;
-    return options.scenes.size() == 1 && !options.info && !options.progress_lines &&
+    return options.scenes.size() == 1 && !options.info && !options.news &&
            std::filesystem::is_directory(options.scenes.front(), code);
 }
 
@@ -145,11 +148,34 @@ bool has_terminal() {
     return terminal >= 0;
 }
 
+/// Holds back SIGHUP until the end of the scope, on this thread and those that begin meanwhile.
+class HangUpsWait {
+public:
+    HangUpsWait() {
+        sigset_t hang_up;
+        ::sigemptyset(&hang_up);
+        ::sigaddset(&hang_up, SIGHUP);
+        ::pthread_sigmask(SIG_BLOCK, &hang_up, &before_);
+    }
+    ~HangUpsWait() { ::pthread_sigmask(SIG_SETMASK, &before_, nullptr); }
+    HangUpsWait(HangUpsWait const&) = delete;
+    HangUpsWait& operator=(HangUpsWait const&) = delete;
+
+private:
+    sigset_t before_{};
+};
+
 void serve(Options& options) {
+    std::optional<HangUpsWait> until_ready(std::in_place); // it is for a scene that is served
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
     std::unique_ptr<MetricsPort> metrics =
         options.metrics_port ? std::make_unique<MetricsPort>(options.metrics_bind, *options.metrics_port) : nullptr;
     read_files(options);
+    std::optional<EventLog> event_log;
+    if (!options.record_events.empty()) {
+        event_log.emplace(options.record_events, [](std::string const& problem) { spdlog::warn("{}", problem); });
+        options.server.loop.event_log = &*event_log;
+    }
     std::optional<LocalToken> local_token;
     if (options.local_token) {
         std::vector<std::string> addresses;
@@ -176,28 +202,23 @@ void serve(Options& options) {
         named.push_back(environment_file);
         watch.emplace().watch(named);
     }
-    std::unique_ptr<LoadedScene> loaded =
-        load_scene(options, options.progress_lines ? make_progress_lines() : loading_bar(options));
+    std::unique_ptr<LoadedScene> loaded = load_scene(options, report(options));
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
     options.server.loop.recorder = recorder ? &*recorder : nullptr;
-    std::optional<EventLog> event_log;
-    if (!options.record_events.empty()) {
+    if (event_log) {
         StreamOptions const& stream = options.server.loop.stream;
-        event_log.emplace(
-            options.record_events,
-            ServedScene{{scene_files.begin(), scene_files.end()},
-                        options.environment ? std::filesystem::absolute(*options.environment).string() : "",
-                        loaded->clips,
-                        loaded->exposure,
-                        stream.bias,
-                        stream.batch_framelets});
-        options.server.loop.event_log = &*event_log;
+        event_log->begin({{scene_files.begin(), scene_files.end()},
+                          options.environment ? std::filesystem::absolute(*options.environment).string() : "",
+                          loaded->clips,
+                          loaded->exposure,
+                          stream.bias,
+                          stream.batch_framelets});
     }
     Server server(std::move(loaded), options.server, std::move(listener));
     // What asks the server, or tells it something, ends before it.
     std::unique_ptr<MetricsPort> const answering = std::move(metrics);
-    options.import.checker = "/proc/self/exe"; // from now on there are viewers
+    options.import.is_serving = true;
     SceneReloader reloader(
         std::move(watch), scene_files, environment_file, files,
         [&options](Progress const& progress) { return load_scene(options, progress); },
@@ -213,8 +234,12 @@ void serve(Options& options) {
         }
         return true;
     });
+    until_ready.reset();
     for (std::string const& address : server.addresses()) {
         std::cout << "listening on " << address << std::endl;
+        if (options.news) {
+            ::dprintf(*options.news, "listening on %s\n", address.c_str());
+        }
     }
     if (!options.server.tls_certificate.empty()) {
         std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
@@ -231,6 +256,7 @@ void serve(Options& options) {
 
 // NOLINTNEXTLINE(bugprone-exception-escape): what nobody expects may end the program.
 int main(int argc, char** argv) {
+    framelet::open_standard_files();
     framelet::give_back_large_blocks();
     std::signal(SIGPIPE, SIG_IGN); // whoever reads the log may go away; viewers stay
     std::signal(SIGCHLD, SIG_DFL); // where it is ignored, perhaps since before this was started, no child is heard of
@@ -239,6 +265,7 @@ int main(int argc, char** argv) {
         return *exit_code;
     }
     auto& options = std::get<framelet::Options>(parsed);
+    options.import.checker = "/proc/self/exe";
     framelet::open_log(options.log, options.quiet);
     framelet::give_way(options.nice); // before there are threads
     try {

@@ -4,6 +4,7 @@
 
 #include "common/command_line/command_line.h"
 #include "common/command_line/number_range.h"
+#include "common/command_line/standard_output.h"
 #include "common/error.h"
 #include "protocol/stream/token.h"
 
@@ -87,7 +88,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_flag_callback(
            "--make-token",
            [] {
-               std::cout << make_token() << '\n';
+               print_output(make_token() + "\n");
                throw CLI::Success();
            },
            "Print a token that nobody can guess, and exit")
@@ -155,8 +156,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             ->capture_default_str();
     // framelet becomes the server with this for a folder: what a line of the list of its scenes begins with.
     app.add_option("--list-as", options.list_as)->group("")->configurable(false);
-    // The viewer's PrivateServer starts the server with this.
-    app.add_flag("--progress-lines", options.progress_lines)->group("")->configurable(false);
+    // The viewer's PrivateServer and the check of imports start the server with this.
+    app.add_option("--news", options.news)->check(number_in(1, 1023))->group("")->configurable(false);
     app.add_option(
            "--record", options.record,
            "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
@@ -185,6 +186,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         return error.get_exit_code() == 0 ? exit_usage(app, error) : end(usage_problem(app, error));
     } catch (InputError const& error) {
         return end(usage_problem(error.what()));
+    } catch (OutputError const& error) {
+        return end({error.what(), 1});
     }
     options.import.memory_bytes = scene_megabytes << 20;
     options.local_token = options.token_file.empty() && !insecure;

@@ -22,8 +22,8 @@ struct Options {
     int nice = default_nice; ///< of all threads
     bool quiet = false;
     LogFormat log = LogFormat::text;
-    bool progress_lines = false; ///< of loading, for who started this program
     std::string list_as = "framelet-server"; ///< what shows a scene, in the list of those of a folder
+    std::optional<int> news; ///< descriptor for lines of loading and addresses, for who started this program
     bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing
     bool json = false; ///< that as JSON

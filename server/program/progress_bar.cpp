@@ -11,6 +11,7 @@
 
 #include <unistd.h>
 
+#include "common/one_line.h"
 #include "server/program/progress_line.h"
 
 namespace framelet {
@@ -94,13 +95,13 @@ Progress make_progress_bar(bool quiet) {
     return [bar = std::make_shared<Bar>()](std::string_view what, double fraction) { bar->show(what, fraction); };
 }
 
-Progress make_progress_lines() {
+Progress make_progress_lines(int descriptor) {
     struct Told {
         std::mutex mutex; // as above
         std::string stage;
         int percent = -1;
     };
-    return [told = std::make_shared<Told>()](std::string_view what, double fraction) {
+    return [told = std::make_shared<Told>(), descriptor](std::string_view what, double fraction) {
         std::scoped_lock const lock(told->mutex);
         int const now = percent_of(fraction);
         if (what == told->stage && now <= told->percent) {
@@ -108,8 +109,7 @@ Progress make_progress_lines() {
         }
         told->stage = what;
         told->percent = now;
-        std::printf("loading %d%% %s\n", now, told->stage.c_str());
-        std::fflush(stdout);
+        ::dprintf(descriptor, "loading %d%% %s\n", now, to_one_line(what).c_str());
     };
 }
 

@@ -9,6 +9,6 @@ namespace framelet {
 Progress make_progress_bar(bool quiet);
 
 /// Makes one that prints to stdout a line "loading PERCENT% STAGE" for each percent, for who started this program.
-Progress make_progress_lines();
+Progress make_progress_lines(int descriptor);
 
 } // namespace framelet

@@ -4,6 +4,8 @@
 #include <array>
 #include <cstdio>
 
+#include "common/one_line.h"
+
 namespace framelet {
 namespace {
 
@@ -45,8 +47,8 @@ std::string progress_line(std::string_view what, double fraction, double seconds
     auto const filled = static_cast<std::size_t>(bar_columns * done);
     std::array<char, 16> percent{};
     std::snprintf(percent.data(), percent.size(), "%3d%%", static_cast<int>(100 * done));
-    std::string line = in_columns(what) + " [" + std::string(filled, '#') + std::string(bar_columns - filled, ' ') +
-                       "] " + percent.data() + "  " + time_text(seconds);
+    std::string line = in_columns(to_one_line(what)) + " [" + std::string(filled, '#') +
+                       std::string(bar_columns - filled, ' ') + "] " + percent.data() + "  " + time_text(seconds);
     constexpr double most_seconds = 100 * 3600; // beyond that it is no forecast
     double const left = done > 0 ? seconds * (1 - done) / done : most_seconds;
     if (seconds >= 1 && done < 1 && left < most_seconds) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/error.h"
+#include "common/one_line.h"
 #include "server/scene/assimp/assimp_import.h"
 #include "server/scene/finish/scene_finish.h"
 #include "server/scene/gltf/gltf_import.h"
@@ -17,17 +18,17 @@
 namespace framelet {
 namespace {
 
-/// The text as one line of bounded length, whatever the file's names and a library's message hold.
+/// The text as one printable line of bounded length, whatever the file's names and a library's message hold.
 std::string one_line(std::string text) {
     constexpr std::size_t longest = 400;
-    std::replace_if(
-        text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-    text.erase(text.find_last_not_of(' ') + 1);
-    if (text.size() > longest) {
-        text.resize(longest);
-        text += "...";
-    }
-    return text;
+    text.erase(text.find_last_not_of(" \n\r\t") + 1);
+    std::string const line = to_one_line(text);
+    return line.size() > longest ? to_one_line(line, longest) + "..." : line;
+}
+
+/// True for formats without trees.
+bool is_flat(std::string const& extension) {
+    return extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
 }
 
 void check_file(std::filesystem::path const& file) {
@@ -70,14 +71,13 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
         std::string const extension = lower_extension(file);
         SceneFolder const folder(file, options.allow_outside);
         bool const is_gltf = extension == ".gltf" || extension == ".glb";
-        bool const is_checked = !options.checker.empty();
-        if (is_checked) {
+        if (!options.checker.empty() && (options.is_serving || !(is_gltf || is_flat(extension)))) {
             ImportOptions of_file = options;
             of_file.memory_bytes = budget.left();
             check_import(file, of_file, report);
         }
         Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
-                              : import_assimp(file, folder, budget, report, is_checked);
+                              : import_assimp(file, folder, budget, report, options.is_serving);
         finish_scene(scene, budget, report);
         scene.name = one_line(scene.name.empty() ? file.stem().string() : scene.name);
         for (AnimationClip& clip : scene.clips) {

@@ -74,7 +74,9 @@ bool Admission::resume(Tickets::Holder& holder, std::shared_ptr<Session> const& 
         !earlier->can_be_resumed(hello.last_batch)) {
         return false;
     }
-    spdlog::info("viewer {} is viewer {}, who has come back", session->id(), earlier->id());
+    if (auto const more = returns_.next(std::chrono::steady_clock::now())) {
+        spdlog::info("viewer {} is viewer {}, who has come back{}", session->id(), earlier->id(), *more);
+    }
     memory_.pass(earlier->id(), session->id());
     session->resume(earlier, hello.last_batch);
     holder.session = session;
@@ -105,6 +107,12 @@ void Admission::leave(std::uint64_t id, Session const* session) {
 void Admission::keep_parked(std::size_t most) {
     while (tickets_.parked_count() > most) {
         give_up_longest_parked();
+    }
+}
+
+void Admission::forget_viewers() {
+    while (auto const* const holder = tickets_.any()) {
+        give_up(*holder);
     }
 }
 

@@ -53,10 +53,15 @@ public:
     void leave(std::uint64_t id, Session const* session);
     /// Lets at most `most` of those who are away, the last to go, come back; gives up the others.
     void keep_parked(std::size_t most);
+    /// Nobody who was let in so far comes back, whether the server has noticed that they are gone or not: what they had
+    /// is of another scene.
+    void forget_viewers();
     /// Gives up those who have been away for too long.
     void give_up_who_stay_away(Time now);
 
 private:
+    static constexpr std::size_t most_returns = 20; ///< lines of them in an interval of the log
+
     bool knows_control_token(Hello const& hello) const;
     bool resume(Tickets::Holder& holder, std::shared_ptr<Session> const& session, Hello const& hello);
     bool give_up_longest_parked();
@@ -68,7 +73,7 @@ private:
     SessionMemory memory_;
     Tickets tickets_;
     TokenGuesses guesses_;
-    LogLimit wrong_tokens_;
+    LogLimit wrong_tokens_, returns_{most_returns};
 };
 
 } // namespace framelet

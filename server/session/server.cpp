@@ -15,6 +15,7 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
+#include "protocol/stream/handshake_thread.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
 #include "server/session/admission.h"
@@ -44,6 +45,8 @@ constexpr std::chrono::seconds heartbeat{1};
 constexpr std::chrono::seconds healthy_pause{10};
 /// How long after a viewer has left the others are told, of all that leave meanwhile at once.
 constexpr std::chrono::milliseconds leaving_told_after{100};
+/// Most lines of viewers that have come, and that have gone, in an interval of the log.
+constexpr std::size_t viewer_lines = 20;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 
@@ -56,6 +59,7 @@ bool is_loopback(std::string const& bind) {
 }
 
 struct Server::Impl {
+    std::optional<HandshakeThread> handshakes; ///< goes after the io_context; nothing: there is no TLS
     std::unique_ptr<Listener> const listener;
     asio::io_context& io = listener->io;
     asio::steady_timer timer{io}, clock_timer{io}, leaving_timer{io};
@@ -68,6 +72,7 @@ struct Server::Impl {
     Admission admission;
     WaitingRoom waiting;
     LogLimit turned_away, failures; ///< of what the log says of such connections, and of what fails for a moment
+    LogLimit come{viewer_lines}, gone{viewer_lines}; ///< of viewers
     std::minstd_rand random{std::random_device{}()};
     Farewells farewells;
 
@@ -92,8 +97,15 @@ struct Server::Impl {
           loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
+            handshakes.emplace();
         }
         listener->listen();
+    }
+
+    ~Impl() {
+        if (handshakes) {
+            handshakes->stop();
+        }
     }
 
     std::unique_ptr<SessionLoop> make_loop(PosedScene& scene, LoopOptions const& loop_options) {
@@ -119,7 +131,7 @@ struct Server::Impl {
                 end_in_need(*session, true);
             }
         }
-        admission.keep_parked(0);
+        admission.forget_viewers();
         welcome = std::move(next_welcome);
         loop.replace(std::move(next_loop)); // the one before goes before the scene that it looks at
         ++scenes;
@@ -164,7 +176,8 @@ struct Server::Impl {
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;
         connection.source = source;
-        connection.stream = tls ? tls_server_stream(std::move(socket), tls) : plain_stream(std::move(socket));
+        connection.stream =
+            tls ? tls_server_stream(std::move(socket), tls, handshakes->executor()) : plain_stream(std::move(socket));
         connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
         auto const session = connection.session;
         auto const delay = admission.delay(source, steady_clock::now());
@@ -215,7 +228,9 @@ struct Server::Impl {
                                " viewers already: try later or raise --max-sessions",
                            true};
         }
-        spdlog::info("viewer {} connects from {}", id, connection.session->peer());
+        if (auto const more = come.next(now)) {
+            spdlog::info("viewer {} connects from {}{}", id, connection.session->peer(), *more);
+        }
         connection.admitted = true;
         ++viewers;
         waiting.leave(id);
@@ -297,9 +312,12 @@ struct Server::Impl {
     }
 
     void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
+        auto const now = steady_clock::now();
         if (connection.admitted) {
-            spdlog::info("viewer {} left: {}", id, reason);
-        } else if (auto const more = turned_away.next(steady_clock::now())) {
+            if (auto const more = gone.next(now)) {
+                spdlog::info("viewer {} left: {}{}", id, reason, *more);
+            }
+        } else if (auto const more = turned_away.next(now)) {
             spdlog::info("a connection from {} ended before it was a viewer's: {}{}", connection.source, reason, *more);
         }
     }

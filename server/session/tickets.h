@@ -34,6 +34,8 @@ public:
     Holder* of(Session const& session) {
         return found(std::ranges::find(holders_, &session, [](Holder const& holder) { return holder.session.get(); }));
     }
+    /// One of the holders; null: there is none.
+    Holder* any() { return holders_.empty() ? nullptr : &holders_.back(); }
     /// The holder that has been away longest; null: none is away.
     Holder* longest_parked() {
         auto const least = std::ranges::min_element(

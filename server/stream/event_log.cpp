@@ -1,9 +1,14 @@
 #include "server/stream/event_log.h"
 
 #include <bit>
+#include <cerrno>
 #include <cstring>
+#include <utility>
 
+#include <fcntl.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
@@ -75,26 +80,57 @@ Bytes event_content(double seconds, M const& message) {
 
 } // namespace
 
-EventLog::EventLog(std::filesystem::path const& file, ServedScene const& served)
-    : out_(file, std::ios::binary | std::ios::trunc) {
+EventLog::EventLog(std::filesystem::path const& file, OnFailure on_failure)
+    : file_(file), on_failure_(std::move(on_failure)) {
+    int const descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_NONBLOCK | O_CLOEXEC | O_NOCTTY, 0666);
+    struct stat found {};
+    bool const is_pipe = descriptor >= 0 && ::fstat(descriptor, &found) == 0 && S_ISFIFO(found.st_mode);
+    if (!is_pipe && descriptor >= 0) {
+        out_.reset(::fdopen(descriptor, "wb"));
+    }
+    if (!out_) {
+        std::string const why = is_pipe || errno == ENXIO ? "it is a pipe" : std::strerror(errno);
+        if (descriptor >= 0) {
+            ::close(descriptor);
+        }
+        throw InputError("cannot write '" + file.string() + "': " + why +
+                         ": give --record-events a file in a folder that exists");
+    }
+}
+
+EventLog::~EventLog() {
+    if (out_ && std::fflush(out_.get()) != 0) {
+        note_failure();
+    }
+}
+
+void EventLog::begin(ServedScene const& served) {
     nlohmann::ordered_json const line{
         {"scenes", served.scenes}, {"environment", served.environment},
         {"clips", served.clips},   {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
         {"bias", served.bias},     {"batch_framelets", served.batch_framelets}};
-    out_ << first_line << '\n' << line.dump() << '\n' << std::flush;
-    if (!out_) {
-        throw InputError("cannot write '" + file.string() + "': give --record-events a file in a folder that exists");
+    std::string const text = std::string(first_line) + "\n" + line.dump() + "\n";
+    static_cast<void>(::ftruncate(::fileno(out_.get()), 0)); // a device has no length
+    if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0) {
+        note_failure();
     }
 }
 
+void EventLog::note_failure() {
+    std::string const why = std::strerror(errno);
+    out_.reset();
+    on_failure_("cannot write '" + file_.string() + "': " + why + "; what comes from now on is not recorded");
+}
+
 void EventLog::write(std::uint64_t session, std::uint8_t kind, Bytes const& content) {
-    Bytes head;
-    put(head, kind);
-    put(head, session);
-    put(head, static_cast<std::uint32_t>(content.size()));
+    Bytes bytes;
+    put(bytes, kind);
+    put(bytes, session);
+    put(bytes, static_cast<std::uint32_t>(content.size()));
+    bytes.insert(bytes.end(), content.begin(), content.end());
     std::scoped_lock const lock(mutex_);
-    for (Bytes const* const part : {&std::as_const(head), &content}) {
-        out_.write(reinterpret_cast<char const*>(part->data()), static_cast<std::streamsize>(part->size()));
+    if (out_ && std::fwrite(bytes.data(), 1, bytes.size(), out_.get()) != bytes.size()) {
+        note_failure();
     }
 }
 

@@ -6,8 +6,11 @@
 // a viewer says and batches are message bodies as on the wire.
 #pragma once
 
+#include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -48,12 +51,20 @@ struct LogRecord {
     std::variant<ViewerCame, StreamEvent, TurnGiven, TurnLearnt, BatchEncoded> what;
 };
 
-/// All members may be called from any thread.
+/// All members may be called from any thread, once it has begun.
 class EventLog {
 public:
-    /// Throws InputError where the file cannot be written.
-    EventLog(std::filesystem::path const& file, ServedScene const& served);
+    using OnFailure = std::function<void(std::string const&)>;
 
+    /// Opens the file, and leaves it as it is until `begin`. Throws InputError where it cannot be written, or is a
+    /// pipe, for whose reader a server would wait. `on_failure` is called once, with a line, where writing fails later,
+    /// as on a full disk: nothing more is written then.
+    EventLog(std::filesystem::path const& file, OnFailure on_failure);
+    ~EventLog();
+    EventLog(EventLog const&) = delete;
+    EventLog& operator=(EventLog const&) = delete;
+
+    void begin(ServedScene const& served);
     void add_viewer(std::uint64_t session, std::uint32_t codings);
     void add_event(std::uint64_t session, StreamEvent const& event);
     void add_turn(std::uint64_t session, Turn const& turn, Step step);
@@ -61,10 +72,17 @@ public:
     void add_batch(std::uint64_t session, EncodedBatch const& batch);
 
 private:
-    void write(std::uint64_t session, std::uint8_t kind, Bytes const& content);
+    struct Close {
+        void operator()(std::FILE* file) const { std::fclose(file); }
+    };
 
+    void write(std::uint64_t session, std::uint8_t kind, Bytes const& content);
+    void note_failure();
+
+    std::filesystem::path const file_;
+    OnFailure const on_failure_;
     std::mutex mutex_;
-    std::ofstream out_;
+    std::unique_ptr<std::FILE, Close> out_; ///< null: writing has failed
 };
 
 class EventLogReader {

@@ -1,6 +1,7 @@
 #include "client/video/video_writer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <future>
 #include <utility>
 #include <vector>
@@ -70,7 +71,7 @@ std::vector<int> lumas(std::string const& video) {
 TEST(VideoWriter, RepeatsAndLeavesOutByTheClock) {
     Pipe pipe;
     auto text = std::async(std::launch::async, [&] { return pipe.read_all(); });
-    VideoWriter writer(pipe.writing(), size, PictureRate::of(10));
+    VideoWriter writer(pipe.writing(), size, PictureRate::of(10), [] { return false; });
     writer.show({grey(0), true, true, 0});
     writer.show({grey(255), true, true, 0.3});
     writer.show({grey(0), true, true, 0.31}); // has no place of its own,
@@ -83,7 +84,7 @@ TEST(VideoWriter, RepeatsAndLeavesOutByTheClock) {
 
 TEST(VideoWriter, NeverWaitsAndKeepsItsLengthWhenNobodyReadsForAWhile) {
     Pipe pipe;
-    VideoWriter writer(pipe.writing(), size, PictureRate::of(10));
+    VideoWriter writer(pipe.writing(), size, PictureRate::of(10), [] { return false; });
     for (int i = 0; i < 100; ++i) { // more than the pipe has room for
         writer.show({grey(static_cast<std::uint8_t>(i)), true, true, 0.1 * i});
     }
@@ -95,7 +96,7 @@ TEST(VideoWriter, NeverWaitsAndKeepsItsLengthWhenNobodyReadsForAWhile) {
 
 TEST(VideoWriter, AReaderThatGoesIsTheEndAndNoFailure) {
     Pipe pipe;
-    VideoWriter writer(pipe.writing(), size, PictureRate::of(10));
+    VideoWriter writer(pipe.writing(), size, PictureRate::of(10), [] { return false; });
     pipe.close_end(0);
     for (int i = 0; writer.end_reason().empty(); ++i) {
         writer.show({grey(1), true, true, 0.1 * i});
@@ -104,10 +105,22 @@ TEST(VideoWriter, AReaderThatGoesIsTheEndAndNoFailure) {
     EXPECT_NE(writer.end_reason().find("reads"), std::string::npos);
 }
 
+TEST(VideoWriter, OnceToldToEndItWaitsForNoReaderForGood) {
+    Pipe pipe;
+    std::atomic<bool> is_told = false;
+    VideoWriter writer(pipe.writing(), size, PictureRate::of(10), [&is_told] { return is_told.load(); });
+    for (int i = 0; i < 100; ++i) { // more than the pipe has room for
+        writer.show({grey(static_cast<std::uint8_t>(i)), true, true, 0.1 * i});
+    }
+    is_told = true;
+    writer.finish();
+    EXPECT_EQ(writer.end_reason(), "nobody reads the video any more");
+}
+
 TEST(VideoWriter, SaysThatItCannotWrite) {
     int const full = ::open("/dev/full", O_WRONLY | O_CLOEXEC);
     ASSERT_GE(full, 0);
-    VideoWriter writer(full, size, PictureRate::of(10));
+    VideoWriter writer(full, size, PictureRate::of(10), [] { return false; });
     EXPECT_THROW(writer.finish(), InputError);
     ::close(full);
 }

@@ -342,6 +342,11 @@ TEST(Loopback, TlsProtectsAndIsChecked) {
     EXPECT_EQ(connect({"--tls", "--tls-ca", certificate}), 0);
     EXPECT_EQ(connect({"--tls", "--tls-ca", other_certificate}), 1) << "nobody vouches for the certificate";
     EXPECT_EQ(connect({}), 1) << "plain text is not served";
+    EXPECT_EQ(server.process().errors().find("--tls-key"), std::string::npos) << server.process().errors();
+    std::filesystem::permissions(key, std::filesystem::perms(0644));
+    ServerProcess open(scene_file, {"--tls-cert", certificate, "--tls-key", key, "--paused"});
+    EXPECT_NE(open.process().errors().find("every user of this machine can read"), std::string::npos)
+        << open.process().errors();
 }
 
 TEST(Loopback, ACertificateThatNobodyVouchesForIsAskedAboutAndTrustedUntilItChanges) {

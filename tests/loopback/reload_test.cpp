@@ -258,7 +258,7 @@ TEST(ImportProcess, EndsWithTheServerThatHasStartedIt) {
         folder.write("cameras.gltf", R"({"asset":{"version":"2.0"},"nodes":[)" + nodes +
                                          R"(],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],)"
                                          R"("meshes":[{"primitives":[{"attributes":{}}]}]})");
-    std::string const reader = "echo $$ > reader; exec " FRAMELET_SERVER " --info --json --progress-lines " + scene;
+    std::string const reader = "echo $$ > reader; exec " FRAMELET_SERVER " --info --json --news 1 " + scene;
     Process shell("/bin/sh", {"-c", "cd " + folder.path().string() + "; sh -c '" + reader +
                                         "' | sh -c 'read line; echo $$ > idle; exec sleep 1000'"});
     auto const id_in = [&](char const* name) {

@@ -212,6 +212,65 @@ TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
     EXPECT_TRUE(server.process().running());
 }
 
+TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoServerFromStarting) {
+    TemporaryFolder folder;
+    std::string const pipe = (folder.path() / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    std::string const file = folder.write("file", "no certificate\n");
+    for (std::vector<std::string> const& options : {std::vector<std::string>{"--token-file", pipe},
+                                                    {"--control-token-file", pipe},
+                                                    {"--record-events", pipe},
+                                                    {"--tls-cert", pipe, "--tls-key", file}}) {
+        std::vector<std::string> arguments{scene_file, "--port", "0"};
+        arguments.insert(arguments.end(), options.begin(), options.end());
+        Process server(FRAMELET_SERVER, arguments);
+        EXPECT_EQ(server.wait(patience), 1) << options[0];
+        EXPECT_EQ(lines_in(server.errors()), 1u) << server.errors();
+        EXPECT_NE(server.errors().find(pipe), std::string::npos) << server.errors();
+    }
+}
+
+TEST(Unwelcome, ATokenMayComeOutOfAPipe) {
+    std::string const token = "0123456789abcdef0123456789abcdef";
+    TemporaryFolder folder;
+    ServerProcess const server = ServerProcess::of_program(
+        "/bin/bash", {"-c", "exec \"$0\" \"$1\" --port 0 --paused --token-file <(sleep 0.2; echo " + token + ")",
+                      FRAMELET_SERVER, scene_file});
+    EXPECT_EQ(connect_client(server, {"--token-file", folder.write("token", token)}), "");
+}
+
+/// Else a connection would be 0, 1 or 2, and get what is meant for the log.
+TEST(Unwelcome, ClosedDescriptorsBecomeNoConnections) {
+    ServerProcess server = server_after("exec 0<&- 2>&-; ", {"--paused"});
+    EXPECT_EQ(connect_client(server), "");
+    for (char const* const number : {"0", "2"}) {
+        std::filesystem::path const file = "/proc/" + std::to_string(server.process().pid()) + "/fd/" + number;
+        EXPECT_EQ(std::filesystem::read_symlink(file), "/dev/null");
+    }
+}
+
+TEST(Unwelcome, AHangUpWhileTheSceneLoadsEndsNothing) {
+    TemporaryFolder folder;
+    std::filesystem::path const record = folder.path() / "record";
+    Process server(FRAMELET_SERVER, {scene_file, "--port", "0", "--paused", "--record", record.string()});
+    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(record); })); // before it begins to load
+    server.signal(SIGHUP);
+    EXPECT_TRUE(eventually(
+        [&] { return server.errors().find("loading the scene again") != std::string::npos || !server.running(); }));
+    EXPECT_TRUE(server.running());
+    EXPECT_NE(server.output().find("listening on"), std::string::npos);
+}
+
+TEST(Unwelcome, ViewersThatComeAndGoDoNotFillTheLog) {
+    ServerProcess server(scene_file, {"--paused", "--insecure"});
+    for (int i = 0; i < 300; ++i) {
+        RawViewer viewer(port_of(server));
+        ASSERT_TRUE(viewer.watch([](Message const& message) { return std::holds_alternative<Welcome>(message); }));
+    }
+    EXPECT_LT(lines_in(server.process().errors()), 300u) << server.process().errors();
+    EXPECT_NE(server.process().errors().find("viewer 1 connects"), std::string::npos);
+}
+
 TEST(Unwelcome, WhenTheServerIsToldToEndViewersHearOfIt) {
     ServerProcess server(scene_file, {"--paused", "--insecure"});
     RawViewer viewer(port_of(server));

@@ -8,8 +8,12 @@
 #include <thread>
 #include <vector>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/ioctl.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/files/image_io.h"
 #include "tests/loopback/process.h"
@@ -204,6 +208,23 @@ TEST(Sheet, NeedsTheClock) {
     EXPECT_FALSE(std::filesystem::exists(file));
     Process wrong(FRAMELET_CLIENT, {server.address(), "--sheet", "sheet.jpg"});
     EXPECT_EQ(wrong.wait(patience), 2);
+}
+
+TEST(Video, ASignalEndsItWhileNobodyReadsThePipe) {
+    ServerProcess const server(scene_file, {"--insecure"});
+    TemporaryFolder const folder;
+    std::string const pipe = (folder.path() / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    int const reader = ::open(pipe.c_str(), O_RDWR | O_CLOEXEC); // which reads nothing
+    Process client("/bin/sh", {"-c", "exec \"$0\" \"$@\" >'" + pipe + "'", FRAMELET_CLIENT, server.address(), "--size",
+                               "320x200", "--duration", "1000", "--output", "-"});
+    EXPECT_TRUE(eventually([&] { // it waits for a reader
+        int bytes = 0;
+        return ::ioctl(reader, FIONREAD, &bytes) == 0 && bytes > 60'000;
+    }));
+    client.signal(SIGTERM);
+    EXPECT_EQ(client.wait(60s), 0) << client.errors();
+    ::close(reader);
 }
 
 } // namespace

@@ -44,6 +44,16 @@ TEST_F(KnownServers, AnotherCertificateIsRefused) {
     EXPECT_TRUE(judge_certificate(file_, "one:7070", "AA:01").is_trusted) << "nothing has been forgotten";
 }
 
+TEST_F(KnownServers, AnotherSpellingIsNoOtherServer) {
+    judge_certificate(file_, "one.example:7070", "AA:01");
+    judge_certificate(file_, "[2001:DB8::0:1]:7070", "AA:01");
+    for (char const* const same : {"ONE.example:7070", "one.example.:7070", "[2001:db8::1]:7070"}) {
+        EXPECT_FALSE(judge_certificate(file_, same, "BB:02").is_trusted) << same;
+        EXPECT_EQ(judge_certificate(file_, same, "AA:01").notice, "") << same;
+    }
+    EXPECT_TRUE(judge_certificate(file_, "one.example:7071", "BB:02").is_trusted);
+}
+
 TEST_F(KnownServers, OneThatAnAuthorityVouchedForStaysSo) {
     EXPECT_TRUE(judge_certificate(file_, "one:7070", "").is_trusted);
     EXPECT_FALSE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);

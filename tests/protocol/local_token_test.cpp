@@ -3,7 +3,9 @@
 #include <cstdlib>
 #include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -30,7 +32,9 @@ protected:
 
     std::filesystem::path the_file() const {
         for (auto const& entry : std::filesystem::directory_iterator(state())) {
-            return entry.path();
+            if (entry.path().filename() != "lock") {
+                return entry.path();
+            }
         }
         ADD_FAILURE() << "there is none";
         return {};
@@ -54,7 +58,19 @@ TEST_F(LocalTokenFile, TheSameUserFindsItWhileTheServerLives) {
         EXPECT_EQ(read_local_token(here), token.token());
     }
     EXPECT_EQ(read_local_token(here), "");
-    EXPECT_TRUE(std::filesystem::is_empty(state()));
+    EXPECT_EQ(std::distance(std::filesystem::directory_iterator(state()), {}), 1) << "the lock";
+}
+
+/// Another user could, of a folder that others may read.
+TEST_F(LocalTokenFile, WhoeverLocksTheFolderHoldsNobodyUp) {
+    ASSERT_TRUE(make_private_folder(state()));
+    std::filesystem::permissions(state(), std::filesystem::perms(0755));
+    int const folder = ::open(state().c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    ASSERT_EQ(::flock(folder, LOCK_EX), 0);
+    LocalToken const token({here});
+    EXPECT_EQ(read_local_token(here), token.token());
+    EXPECT_EQ(std::filesystem::status(state() / "lock").permissions(), std::filesystem::perms(0600));
+    ::close(folder);
 }
 
 TEST_F(LocalTokenFile, TheRuntimeFolderComesFirst) {

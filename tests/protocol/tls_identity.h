@@ -26,15 +26,16 @@ using Certificate = std::unique_ptr<X509, Free<X509, X509_free>>;
 /// A certificate for localhost and 127.0.0.1, signed with its own key, as files in a folder of the test's.
 class Identity {
 public:
-    explicit Identity(std::string const& name) {
+    /// `seconds`: how long it is valid yet.
+    explicit Identity(std::string const& name, long seconds = 3600) {
         std::string pattern = (std::filesystem::temp_directory_path() / "framelet-tls-XXXXXX").string();
         folder_ = ::mkdtemp(pattern.data());
         Key const key(EVP_EC_gen("P-256"));
         Certificate const certificate(X509_new());
         X509_set_version(certificate.get(), X509_VERSION_3);
         ASN1_INTEGER_set(X509_get_serialNumber(certificate.get()), 1);
-        X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -3600);
-        X509_gmtime_adj(X509_getm_notAfter(certificate.get()), 3600);
+        X509_gmtime_adj(X509_getm_notBefore(certificate.get()), -7200);
+        X509_gmtime_adj(X509_getm_notAfter(certificate.get()), seconds);
         X509_set_pubkey(certificate.get(), key.get());
         X509_NAME* const subject = X509_get_subject_name(certificate.get());
         auto const* const text = reinterpret_cast<unsigned char const*>(name.c_str());

@@ -1,9 +1,15 @@
+#include <future>
 #include <memory>
+#include <mutex>
 #include <new>
+#include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "common/error.h"
+#include "protocol/stream/handshake_thread.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
 #include "random_message.h"
@@ -15,6 +21,15 @@ namespace {
 
 class TlsStream : public testing::Test {
 protected:
+    ~TlsStream() override { handshakes_.stop(); }
+
+    std::shared_ptr<FramedStream> server_stream(Socket socket,
+                                                std::shared_ptr<boost::asio::ssl::context> const& context) {
+        return tls_server_stream(std::move(socket), context, handshakes_.executor());
+    }
+    std::shared_ptr<FramedStream> server_stream(Socket socket) {
+        return server_stream(std::move(socket), identity_.server());
+    }
     void expect_names(std::optional<std::string> const& reason, std::string const& words) {
         ASSERT_TRUE(reason);
         EXPECT_NE(reason->find(words), std::string::npos) << *reason;
@@ -31,6 +46,7 @@ protected:
     }
 
     Identity const identity_{"server"};
+    HandshakeThread handshakes_;
     IoThread thread_;
     std::pair<Socket, Socket> sockets_ = thread_.connect();
 };
@@ -38,7 +54,7 @@ protected:
 TEST_F(TlsStream, ManyMessagesBothWays) {
     for (char const* host : {"localhost", "127.0.0.1"}) {
         auto [one, two] = thread_.connect();
-        End server(tls_server_stream(std::move(one), identity_.server()));
+        End server(server_stream(std::move(one)));
         End client(tls_client_stream(std::move(two), identity_.client(), host));
         std::vector<Message> sent;
         RandomMessages random(2);
@@ -75,7 +91,7 @@ TEST_F(TlsStream, ManyMessagesBothWays) {
 TEST_F(TlsStream, LastWordArrives) {
     for (int round = 0; round < 20; ++round) {
         auto [one, two] = thread_.connect();
-        End server(tls_server_stream(std::move(one), identity_.server()));
+        End server(server_stream(std::move(one)));
         End client(tls_client_stream(std::move(two), identity_.client(), "localhost"));
         server.start(thread_);
         client.start(thread_);
@@ -95,7 +111,7 @@ TEST_F(TlsStream, LastWordArrives) {
 }
 
 TEST_F(TlsStream, GarbageInsideIsRefused) {
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
     server.start(thread_, 100);
     client.start(thread_);
@@ -110,7 +126,7 @@ TEST_F(TlsStream, GarbageInsideIsRefused) {
 TEST_F(TlsStream, WrongHostIsRefused) {
     for (char const* host : {"example.org", "127.0.0.2"}) {
         auto [one, two] = thread_.connect();
-        End server(tls_server_stream(std::move(one), identity_.server()));
+        End server(server_stream(std::move(one)));
         End client(tls_client_stream(std::move(two), identity_.client(), host));
         server.start(thread_);
         client.start(thread_);
@@ -127,7 +143,7 @@ TEST_F(TlsStream, UntrustedCertificateIsRefused) {
     Identity const other("other");
     for (auto const& context : {other.client(), make_tls_client_context("")}) {
         auto [one, two] = thread_.connect();
-        End server(tls_server_stream(std::move(one), identity_.server()));
+        End server(server_stream(std::move(one)));
         End client(tls_client_stream(std::move(two), context, "localhost"));
         server.start(thread_);
         client.start(thread_);
@@ -138,7 +154,7 @@ TEST_F(TlsStream, UntrustedCertificateIsRefused) {
 
 TEST_F(TlsStream, ACertificateThatThereIsNoMemoryToJudgeIsRefused) {
     auto const context = make_tls_client_context("", [](std::string const&) -> bool { throw std::bad_alloc(); });
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     End client(tls_client_stream(std::move(sockets_.second), context, "localhost"));
     server.start(thread_);
     client.start(thread_);
@@ -163,7 +179,7 @@ TEST_F(TlsStream, ClientAtAPlainServer) {
 }
 
 TEST_F(TlsStream, PlainClientAtATlsServer) {
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     End client(plain_stream(std::move(sockets_.second)));
     server.start(thread_);
     client.start(thread_);
@@ -173,20 +189,20 @@ TEST_F(TlsStream, PlainClientAtATlsServer) {
 }
 
 TEST_F(TlsStream, PeerVanishesInTheHandshake) {
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     server.start(thread_);
     sockets_.second.close();
     expect_names(server.wait_for_close(), "TLS handshake failed: the other side closed the connection");
 }
 
 TEST_F(TlsStream, SilentPeerIsLeft) {
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     server.start(thread_);
     EXPECT_EQ(server.wait_for_close(), "TLS handshake timed out");
 }
 
 TEST_F(TlsStream, CloseInTheHandshake) {
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
     server.start(thread_);
     client.start(thread_);
@@ -199,7 +215,7 @@ TEST_F(TlsStream, CloseInTheHandshake) {
 TEST_F(TlsStream, CloseWhileMuchIsQueued) {
     for (int round = 0; round < 10; ++round) {
         auto [one, two] = thread_.connect();
-        End server(tls_server_stream(std::move(one), identity_.server()));
+        End server(server_stream(std::move(one)));
         End client(tls_client_stream(std::move(two), identity_.client(), "localhost"));
         server.start(thread_);
         client.start(thread_);
@@ -224,12 +240,88 @@ TEST_F(TlsStream, OldVersionsAreRefused) {
     SSL_CTX_set_min_proto_version(old->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_max_proto_version(old->native_handle(), TLS1_2_VERSION);
     SSL_CTX_set_cipher_list(old->native_handle(), "kRSA:ECDHE");
-    End server(tls_server_stream(std::move(sockets_.first), identity_.server()));
+    End server(server_stream(std::move(sockets_.first)));
     End client(tls_client_stream(std::move(sockets_.second), old, "localhost"));
     server.start(thread_);
     client.start(thread_);
     expect_names(server.wait_for_close(), "TLS handshake failed");
     EXPECT_TRUE(client.wait_for_close().has_value());
+}
+
+/// What a user may trust is who has signed, and nothing else that may be wrong with a certificate.
+TEST_F(TlsStream, WhatIsWrongWhoeverHasSignedIsNotTrusted) {
+    bool is_asked = false;
+    auto const trusting = make_tls_client_context("", [&is_asked](std::string const&) { return is_asked = true; });
+    Identity const expired("expired", -3600);
+    for (auto const& [identity, host, words] : {std::tuple(&identity_, "example.org", "mismatch"),
+                                                {&identity_, "127.0.0.2", "mismatch"},
+                                                {&expired, "localhost", "expired"}}) {
+        auto [one, two] = thread_.connect();
+        End server(server_stream(std::move(one), identity->server()));
+        End client(tls_client_stream(std::move(two), trusting, host));
+        server.start(thread_);
+        client.start(thread_);
+        expect_names(client.wait_for_close(), words);
+    }
+    EXPECT_FALSE(is_asked);
+}
+
+/// What a handshake has come to, as OpenSSL tells it, and on which threads.
+struct Steps {
+    std::mutex mutex;
+    std::set<std::thread::id> threads;
+    bool has_answered = false; ///< which is when it signs
+};
+
+Steps& steps() {
+    static Steps all;
+    return all;
+}
+
+void note_step(SSL const* ssl, int, int) {
+    std::scoped_lock const lock(steps().mutex);
+    steps().threads.insert(std::this_thread::get_id());
+    steps().has_answered = steps().has_answered || SSL_get_state(ssl) > TLS_ST_SR_CLNT_HELLO;
+}
+
+TEST_F(TlsStream, HandshakesAreComputedOnAThreadOfTheirOwn) {
+    auto const context = identity_.server();
+    SSL_CTX_set_info_callback(context->native_handle(), note_step);
+    End server(server_stream(std::move(sockets_.first), context));
+    End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
+    client.stream->send(Message(Ack{1, 2, 3}));
+    server.start(thread_);
+    client.start(thread_);
+    EXPECT_TRUE(server.wait_for_messages(1));
+    std::promise<std::thread::id> own;
+    boost::asio::post(thread_.io, [&own] { own.set_value(std::this_thread::get_id()); });
+    std::scoped_lock const lock(steps().mutex);
+    EXPECT_TRUE(steps().has_answered);
+    steps().threads.erase(own.get_future().get()); // where it begins, before there is anything to compute
+    EXPECT_EQ(steps().threads.size(), 1u);
+}
+
+TEST_F(TlsStream, NothingIsComputedForAConnectionThatHasEnded) {
+    auto const context = identity_.server();
+    SSL_CTX_set_info_callback(context->native_handle(), note_step);
+    std::promise<void> go_on;
+    steps().has_answered = false;
+    boost::asio::post(handshakes_.executor(), [waits = go_on.get_future().share()] { waits.wait(); });
+    End server(server_stream(std::move(sockets_.first), context));
+    End client(tls_client_stream(std::move(sockets_.second), identity_.client(), "localhost"));
+    server.start(thread_);
+    client.start(thread_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(200)); // most likely its hello waits to be looked at by then
+    server.stream->send(Message(Failure{"too many", true}));
+    server.stream->close_after_sending();
+    std::promise<void> closed;
+    boost::asio::post(thread_.io, [&closed] { closed.set_value(); });
+    closed.get_future().wait();
+    go_on.set_value();
+    EXPECT_TRUE(client.wait_for_close());
+    EXPECT_TRUE(server.is_released());
+    std::scoped_lock const lock(steps().mutex);
+    EXPECT_FALSE(steps().has_answered);
 }
 
 TEST_F(TlsStream, FilesThatCannotBeUsed) {
@@ -244,6 +336,12 @@ TEST_F(TlsStream, FilesThatCannotBeUsed) {
     expect_input_error([&] { make_tls_server_context(certificate, identity_.locked_key_file()); }, "TLS key");
     expect_input_error([&] { make_tls_client_context("/nowhere.pem"); }, "TLS authority '/nowhere.pem'");
     expect_input_error([&] { make_tls_client_context(key); }, "private key, not a certificate");
+    std::string const pipe = certificate + ".pipe"; // nobody writes into it, and nobody waits for that
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    expect_input_error([&] { make_tls_server_context(pipe, key); }, "it is not a file");
+    expect_input_error([&] { make_tls_server_context(certificate, pipe); }, "it is not a file");
+    expect_input_error([&] { make_tls_client_context(pipe); }, "it is not a file");
+    expect_input_error([&] { certificate_fingerprint(pipe); }, "it is not a file");
 }
 
 } // namespace

@@ -1,8 +1,12 @@
 #include "protocol/stream/token.h"
 
 #include <fstream>
+#include <thread>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/error.h"
 
@@ -51,6 +55,28 @@ TEST_F(TokenFile, Refused) {
     expect_refused("longer");
     put(std::string(16, '\x01'));
     expect_refused("UTF-8");
+}
+
+/// As of a shell's <(...), which may take a moment to say it.
+TEST_F(TokenFile, APipeIsReadUpToItsFirstLine) {
+    ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+    int const pipe = ::open(file_.c_str(), O_RDWR | O_CLOEXEC); // which never ends
+    std::jthread const writer([pipe] {
+        for (std::string const part : {"a secret ", "of many\nmore\n"}) {
+            std::this_thread::sleep_for(std::chrono::milliseconds(100));
+            EXPECT_EQ(::write(pipe, part.data(), part.size()), static_cast<ssize_t>(part.size()));
+        }
+    });
+    EXPECT_EQ(read_token_file(file_), "a secret of many");
+    ::close(pipe);
+}
+
+TEST_F(TokenFile, APipeThatSaysNothingIsNotWaitedForForGood) {
+    ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+    expect_refused("no line has come out of it");
+    int const pipe = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
+    expect_refused("no line has come out of it");
+    ::close(pipe);
 }
 
 TEST_F(TokenFile, FolderIsRefused) {

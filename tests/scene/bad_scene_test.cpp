@@ -253,6 +253,7 @@ TEST(BadScene, ObjectsAndListsOfJsonAreCounted) {
     expect_error(file_with("materials", "{}", ""), "more than 16 MB", with_megabytes(16));
     expect_error(file_with("nodes", "{}", ""), "more than 16 MB", with_megabytes(16));
     expect_error(file_with(R"(skins":[{"joints)", "0", "}]"), "more than 1 MB", with_megabytes(1));
+    expect_error(file_with("extras", "0", ""), "more than 4 MB", with_megabytes(4)); // whose numbers take most
 }
 
 TEST(BadScene, CopiesOfWhatDeformsAreCounted) {
@@ -347,6 +348,24 @@ TEST(BadScene, HeadersOfLargePicturesTakeNoMemory) {
     folder.write("large.png", animation + std::string(200, '\0'));
     auto const file = textured_triangle(folder, "map_Kd large.png\n");
     expect_error(file, "more than 100 MB", with_megabytes(100));
+}
+
+/// Its coefficients are kept until the last part has come, in more memory than the picture takes.
+TEST(BadScene, JpegsOfSeveralPartsTakeMoreThanThePicture) {
+    TemporaryFolder const folder;
+    auto const jpeg = [](char frame, char scan_components) { // 4096x4096 pixels of three components
+        return std::string("\xff\xd8\xff", 3) + frame +
+               std::string("\0\x11\x08\x10\0\x10\0\x03\1\x11\0\2\x11\0\3\x11\0\xff\xda\0\x0c", 21) + scan_components +
+               std::string(200, '\0');
+    };
+    auto const file = textured_triangle(folder, "map_Kd a.jpg\n");
+    folder.write("a.jpg", jpeg('\xc0', 3));
+    EXPECT_NO_THROW(import_scene(file, {}, with_megabytes(100))) << "it is broken, but small enough";
+    for (auto const& [frame, scan_components] : {std::pair('\xc2', 3), std::pair('\xc0', 1)}) {
+        folder.write("a.jpg", jpeg(frame, static_cast<char>(scan_components)));
+        expect_error(file, "more than 100 MB", with_megabytes(100));
+        EXPECT_NO_THROW(import_scene(file, {}, with_megabytes(200)));
+    }
 }
 
 /// A file takes as much memory to be read as it is long, whatever is in it; this one takes next to nothing of a disk.

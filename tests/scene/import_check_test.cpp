@@ -21,6 +21,7 @@ protected:
 
     /// Lets the checker be a shell that runs these lines.
     void be(std::string const& lines) {
+        options_.is_serving = true;
         options_.checker = folder_.write("checker", "#!/bin/sh\n" + lines + "\n");
         std::filesystem::permissions(options_.checker, std::filesystem::perms::owner_all);
     }
@@ -45,7 +46,7 @@ TEST_F(ImportCheck, IsAskedAboutTheFileWithinTheSameLimits) {
     std::ifstream asked(folder_.path() / "asked");
     std::string line;
     std::getline(asked, line);
-    EXPECT_EQ(line, "--info --progress-lines --quiet --scene-memory 300 --allow-outside -- " + file_.string());
+    EXPECT_EQ(line, "--info --news 1 --quiet --scene-memory 300 --allow-outside -- " + file_.string());
 }
 
 TEST_F(ImportCheck, WhatItSaysIsSaidAsIfItHadBeenReadHere) {
@@ -108,6 +109,20 @@ TEST_F(ImportCheck, IsAskedAboutEveryFormat) {
         folder_.write("a.glb", writer.glb(R"("scene":0,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
                                           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}])"));
     EXPECT_THROW(import_scene(gltf, {}, options_), InputError);
+}
+
+/// To read a file twice takes twice as long.
+TEST_F(ImportCheck, AtTheStartIsAskedAboutTreesAlone) {
+    be("kill -SEGV $$");
+    options_.is_serving = false;
+    EXPECT_EQ(complaint(), "");
+    auto const tree = folder_.write("a.dae", "<COLLADA/>");
+    try {
+        import_scene(tree, {}, options_);
+        ADD_FAILURE();
+    } catch (InputError const& error) {
+        EXPECT_NE(std::string(error.what()).find("Segmentation fault"), std::string::npos) << error.what();
+    }
 }
 
 } // namespace

@@ -1,6 +1,7 @@
 #include "server/scene/reading/scene_folder.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include "common/error.h"
 #include "common/files/picture_writer.h"
@@ -126,6 +127,41 @@ TEST_F(Outside, MaterialFilesAndPicturesOfAnObj) {
         EXPECT_NE(scene.warnings[0].find("outside"), std::string::npos) << scene.warnings[0];
         EXPECT_EQ(import("b.obj", "mtllib b.mtl\n" + triangle, true).images.size(), 1u) << name;
     }
+}
+
+/// As whoever may write there can do between a look at a file and its reading.
+TEST_F(Outside, AFileThatBecomesALinkIsNotReadWhereThatLeads) {
+    outer.write("scenes/b.mtl", "newmtl m\nmap_Kd own.png\n");
+    fs::path const file =
+        outer.write("scenes/b.obj", "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
+    auto const swap = [this](std::string_view what, double) {
+        if (what == "images") { // which have been found by then
+            fs::remove(scenes / "own.png");
+            fs::create_symlink("../secret.png", scenes / "own.png");
+        }
+    };
+    Scene const scene = import_scene(file, swap, {});
+    EXPECT_TRUE(scene.images.empty());
+    EXPECT_NE(joined(scene.warnings).find("own.png': the file cannot be read"), std::string::npos)
+        << joined(scene.warnings);
+}
+
+TEST_F(Outside, WhatIsOpenedIsJudged) {
+    SceneFolder const folder(scenes / "a.gltf", false), any(scenes / "a.gltf", true);
+    fs::path const own = scenes / "own.png", link = scenes / "link.png", pipe = scenes / "pipe";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    ASSERT_TRUE(folder.permits(own) && folder.open(own));
+    EXPECT_EQ(folder.open(own)->canonical(), fs::canonical(own));
+    fs::create_symlink(fs::absolute(own), scenes / "own link.png");
+    EXPECT_TRUE(folder.open(scenes / "own link.png"));
+    EXPECT_FALSE(folder.open(link));
+    EXPECT_TRUE(any.open(link));
+    fs::remove(own);
+    fs::create_symlink("../secret.png", own);
+    EXPECT_FALSE(folder.open(own)) << "which was permitted";
+    EXPECT_FALSE(any.open(pipe));
+    EXPECT_FALSE(any.open(scenes));
+    EXPECT_FALSE(any.open(scenes / "missing"));
 }
 
 TEST_F(Outside, TheSceneFileItselfMayBeALink) {

@@ -20,5 +20,16 @@ TEST(LogLimit, SaysOneAndCountsTheOthers) {
     EXPECT_EQ(limit.next(start + 20s), "");
 }
 
+TEST(LogLimit, SaysSomeAndCountsTheOthers) {
+    LogLimit limit(3);
+    WallTime const start{1000s};
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(limit.next(start + i * 1s), "");
+    }
+    EXPECT_EQ(limit.next(start + 9s), std::nullopt);
+    EXPECT_NE(limit.next(start + 10s).value_or("").find("1 more"), std::string::npos);
+    EXPECT_EQ(limit.next(start + 11s), "");
+}
+
 } // namespace
 } // namespace framelet

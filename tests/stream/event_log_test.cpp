@@ -1,8 +1,12 @@
 #include "server/stream/event_log.h"
 
 #include <filesystem>
+#include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
@@ -16,6 +20,10 @@ struct TemporaryFile {
         (std::string("event_log_test_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     ~TemporaryFile() { std::filesystem::remove(path); }
 };
+
+void fail(std::string const& problem) {
+    ADD_FAILURE() << problem;
+}
 
 TEST(EventLog, GivesBackWhatWasAdded) {
     TemporaryFile const file;
@@ -33,7 +41,8 @@ TEST(EventLog, GivesBackWhatWasAdded) {
         {0.5, ClockChanged{}}, {0.6, BatchSent{6, 12345}},
         {0.7, Resumed{5}}};
     {
-        EventLog log(file.path, served);
+        EventLog log(file.path, fail);
+        log.begin(served);
         log.add_viewer(11, coding::all);
         for (StreamEvent const& event : events) {
             log.add_event(11, event);
@@ -69,7 +78,8 @@ TEST(EventLog, GivesBackWhatWasAdded) {
 TEST(EventLog, ARecordThatIsNotWholeIsTheEnd) {
     TemporaryFile const file;
     {
-        EventLog log(file.path, {});
+        EventLog log(file.path, fail);
+        log.begin({});
         log.add_viewer(1, coding::all);
         log.add_turn(1, {}, Step::nothing);
     }
@@ -80,7 +90,35 @@ TEST(EventLog, ARecordThatIsNotWholeIsTheEnd) {
 }
 
 TEST(EventLog, SaysWhereItCannotBeWritten) {
-    EXPECT_THROW(EventLog("/nowhere/at all", {}), InputError);
+    EXPECT_THROW(EventLog("/nowhere/at all", fail), InputError);
+}
+
+TEST(EventLog, IsNoPipeWhoseReaderWouldBeWaitedFor) {
+    TemporaryFile const file;
+    ASSERT_EQ(::mkfifo(file.path.c_str(), 0600), 0);
+    EXPECT_THROW(EventLog(file.path, fail), InputError);
+    int const reader = ::open(file.path.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    EXPECT_THROW(EventLog(file.path, fail), InputError);
+    ::close(reader);
+}
+
+TEST(EventLog, OfAFullDiskItSpeaksOnce) {
+    std::vector<std::string> said;
+    {
+        EventLog log("/dev/full", [&said](std::string const& problem) { said.push_back(problem); });
+        log.begin({});
+        log.add_viewer(1, coding::all);
+        log.add_learning(1);
+    }
+    ASSERT_EQ(said.size(), 1u);
+    EXPECT_NE(said[0].find("'/dev/full': No space left on device"), std::string::npos) << said[0];
+}
+
+TEST(EventLog, LeavesAFileAsItIsUntilItBegins) {
+    TemporaryFile const file;
+    std::ofstream(file.path) << "the recording before";
+    { EventLog const log(file.path, fail); }
+    EXPECT_EQ(std::filesystem::file_size(file.path), 20u);
 }
 
 } // namespace

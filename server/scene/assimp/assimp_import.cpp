@@ -1,8 +1,11 @@
 #include "server/scene/assimp/assimp_import.h"
 
+#include <cstdio>
 #include <optional>
 #include <sstream>
+#include <utility>
 
+#include <assimp/DefaultIOStream.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/MemoryIOWrapper.h>
@@ -32,6 +35,16 @@ constexpr std::uint64_t memory_per_file_byte = 8;
 /// Normals of a file without any are smooth across edges up to this angle.
 constexpr float crease_degrees = 66;
 
+/// A file that is open, as Assimp reads it.
+class OpenedStream : public Assimp::DefaultIOStream {
+public:
+    explicit OpenedStream(RegularFile file)
+        : DefaultIOStream(std::fopen(file.name().c_str(), "rb"), file.name()), file_(std::move(file)) {}
+
+private:
+    RegularFile file_; ///< whose name is asked for its size
+};
+
 /// Opens the scene file and what the folder permits; material files of an .obj as their readable lines. Notes which
 /// files could not be opened: Assimp only mentions them in its log.
 class PermittedFiles : public Assimp::DefaultIOSystem {
@@ -40,23 +53,26 @@ public:
                    MtlRemarks& mtl)
         : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing), mtl_(mtl) {}
 
-    bool Exists(char const* file) const override { return is_readable(file); }
+    bool Exists(char const* file) const override { return open(file).has_value(); }
 
-    Assimp::IOStream* Open(char const* file, char const* mode) override {
-        Assimp::IOStream* const stream = is_readable(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
-        if (!stream) {
+    Assimp::IOStream* Open(char const* file, char const*) override {
+        std::optional<RegularFile> opened = open(file);
+        if (!opened) {
             missing_.emplace_back(file);
             return nullptr;
         }
+        auto* const stream = new OpenedStream(std::move(*opened));
         bool const is_mtl = file != scene_file_ && lower_extension(scene_file_) == ".obj";
         return is_mtl ? cleaned(stream, file) : stream;
     }
 
 private:
-    /// False for what is no file: whoever opens a pipe waits for it.
-    bool is_readable(char const* file) const {
-        std::error_code code;
-        return (file == scene_file_ || folder_.permits(file)) && std::filesystem::is_regular_file(file, code);
+    std::optional<RegularFile> open(char const* file) const {
+        if (file == scene_file_) {
+            RegularFile opened(file);
+            return opened ? std::optional(std::move(opened)) : std::nullopt;
+        }
+        return folder_.permits(file) ? folder_.open(file) : std::nullopt;
     }
 
     Assimp::IOStream* cleaned(Assimp::IOStream* stream, std::filesystem::path const& file) {

@@ -233,7 +233,7 @@ void import_assimp_materials(aiScene const& from, SceneFolder const& folder, Imp
         scene.materials.push_back(reader.read());
         opacity.push_back(reader.texture({aiTextureType_OPACITY}));
     }
-    scene.images = load_images(images.encoded, budget, scene.warnings, progress);
+    scene.images = load_images(images.encoded, folder, budget, scene.warnings, progress);
     std::map<std::pair<Index, Index>, Index> merged;
     for (std::size_t i = 0; i < scene.materials.size(); ++i) {
         Material& material = scene.materials[i];

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 #include "server/scene/reading/file_ending.h"
 
 namespace framelet {
@@ -73,11 +74,12 @@ void check_ply(std::istream& in, std::uintmax_t file_bytes) {
 
 void check_mesh_header(std::filesystem::path const& file) {
     std::string const extension = lower_extension(file);
-    std::ifstream in(file, std::ios::binary);
+    RegularFile const opened(file);
+    std::ifstream in(opened.name(), std::ios::binary);
     if (extension == ".off") {
-        check_off(in, std::filesystem::file_size(file));
+        check_off(in, opened.bytes());
     } else if (extension == ".ply") {
-        check_ply(in, std::filesystem::file_size(file));
+        check_ply(in, opened.bytes());
     }
 }
 

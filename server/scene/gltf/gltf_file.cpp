@@ -4,9 +4,9 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
 #include <functional>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -36,23 +36,17 @@ constexpr std::size_t longest_media_type = 40;
 constexpr std::uintmax_t max_file_bytes = 0xffffffffu;
 
 /// `on_bytes` is called with the number of bytes that have been read since the last call.
-std::vector<unsigned char> read_bytes(std::filesystem::path const& file,
+std::vector<unsigned char> read_bytes(RegularFile const& file, std::string const& name,
                                       std::function<void(std::size_t)> const& on_bytes) {
-    std::error_code code;
-    std::uintmax_t const size = std::filesystem::file_size(file, code);
-    if (code || !std::filesystem::is_regular_file(file)) {
-        throw InputError("file '" + file.string() + "' cannot be read");
+    if (file.bytes() > max_file_bytes) {
+        throw InputError("file '" + name + "' is larger than 4 GiB");
     }
-    if (size > max_file_bytes) {
-        throw InputError("file '" + file.string() + "' is larger than 4 GiB");
-    }
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(size));
-    std::ifstream stream(file, std::ios::binary);
+    std::vector<unsigned char> bytes(static_cast<std::size_t>(file.bytes()));
     constexpr std::size_t part = 8 << 20;
     for (std::size_t at = 0; at < bytes.size(); at += part) {
         std::size_t const count = std::min(part, bytes.size() - at);
-        if (!stream.read(reinterpret_cast<char*>(bytes.data() + at), static_cast<std::streamsize>(count))) {
-            throw InputError("file '" + file.string() + "' cannot be read");
+        if (!file.read(bytes.data() + at, count)) {
+            throw InputError("file '" + name + "' cannot be read");
         }
         on_bytes(count);
     }
@@ -178,8 +172,9 @@ void check_buffer_views(Json const& accessors, Json const& meshes) {
 }
 
 /// Bytes that are reserved for an object and for a value of the JSON: what tinygltf makes of a material that is "{}",
-/// the largest, and of a number in a list.
-constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material), value_bytes = 64;
+/// the largest, and of a number in a list of `extras`, with what is parsed before that.
+constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material);
+constexpr std::uint64_t value_bytes = sizeof(tinygltf::Value) + 3 * sizeof(nlohmann::json);
 
 /// Checks what tinygltf does not, or says less well: the JSON's nesting, its version, extensions and buffer views.
 /// Reserves memory for what will be made of it, and notes how much of each buffer file is wanted: a file may be longer
@@ -236,8 +231,7 @@ bool file_exists(std::string const& path, void* user) {
         }
         return false; // an image: `gltf_images` says so
     }
-    std::error_code code;
-    return std::filesystem::is_regular_file(path, code);
+    return access.folder.open(path).has_value();
 }
 
 std::string same_path(std::string const& path, void*) {
@@ -246,10 +240,14 @@ std::string same_path(std::string const& path, void*) {
 
 bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::string const& path, void* user) {
     auto& access = *static_cast<FileAccess*>(user);
-    std::error_code code;
-    access.budget.reserve(std::filesystem::file_size(path, code), 1); // one file may be named a thousand times
+    std::optional<RegularFile> const file = access.folder.open(path);
+    if (!file) {
+        *error += "file '" + path + "' cannot be read";
+        return false;
+    }
+    access.budget.reserve(file->bytes(), 1); // one file may be named a thousand times
     try {
-        *out = read_bytes(path, [&](std::size_t count) {
+        *out = read_bytes(*file, path, [&](std::size_t count) {
             if (!access.held.call([&] { access.report_read(count); })) {
                 throw InputError("it is not wanted any more"); // what is held says why
             }
@@ -289,11 +287,14 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, Sc
                                            Progress const& progress) {
     constexpr double all_read = 0.9; // then tinygltf takes a while
     double const file_read = lower_extension(file) == ".glb" ? all_read : 0.3; // what else is large lies beside a .gltf
-    std::error_code code; // where it is set, reading says so
-    FileAccess access{folder, budget, progress, std::filesystem::file_size(file, code), 0, 0, file_read};
-    budget.reserve(code ? 0 : access.bytes, 1);
+    RegularFile const opened(file);
+    if (!opened) {
+        throw InputError("it cannot be read: " + opened.problem());
+    }
+    FileAccess access{folder, budget, progress, opened.bytes(), 0, 0, file_read};
+    budget.reserve(access.bytes, 1);
     std::vector<unsigned char> const bytes =
-        read_bytes(file, [&access](std::size_t count) { access.report_read(count); });
+        read_bytes(opened, file.string(), [&access](std::size_t count) { access.report_read(count); });
     std::string const base = folder.path().string();
     std::string_view const json = find_json(bytes);
     inspect_json(json, access);

@@ -44,7 +44,7 @@ Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, 
     }
 
     auto const images = gltf_images(*model, accessors, folder);
-    scene.images = load_images(images, budget, scene.warnings, progress);
+    scene.images = load_images(images, folder, budget, scene.warnings, progress);
     if (!model->scenes.empty()) {
         scene.name = model->scenes[static_cast<std::size_t>(std::max(model->defaultScene, 0))].name;
     }

@@ -1,13 +1,12 @@
 #include "server/scene/reading/image_loading.h"
 
-#include <filesystem>
 #include <mutex>
-#include <system_error>
 
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
 #include "common/files/image_io.h"
+#include "common/files/picture_header.h"
 
 namespace framelet {
 namespace {
@@ -24,10 +23,37 @@ std::vector<Index> new_indices(std::size_t count, auto const& keep) {
     return result;
 }
 
+/// Memory that is taken until the end of the scope.
+class Reserved {
+public:
+    Reserved(ImportBudget& budget, std::uint64_t bytes) : budget_(budget), bytes_(bytes) { budget.reserve(bytes, 1); }
+    ~Reserved() { budget_.give_back(bytes_); }
+    Reserved(Reserved const&) = delete;
+    Reserved& operator=(Reserved const&) = delete;
+
+private:
+    ImportBudget& budget_;
+    std::uint64_t const bytes_;
+};
+
+std::vector<std::byte> read_file(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget) {
+    std::optional<RegularFile> const opened = folder.open(file);
+    std::vector<std::byte> bytes;
+    if (opened) {
+        budget.reserve(opened->bytes(), 1);
+        bytes.resize(opened->bytes());
+    }
+    if (!opened || !opened->read(bytes.data(), bytes.size())) {
+        throw InputError("cannot read image '" + file.string() + "': the file cannot be read");
+    }
+    return bytes;
+}
+
 } // namespace
 
-std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
-                                                        std::vector<std::string>& warnings, Progress const& progress) {
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, SceneFolder const& folder,
+                                                        ImportBudget& budget, std::vector<std::string>& warnings,
+                                                        Progress const& progress) {
     std::vector<std::shared_ptr<Picture const>> pictures(images.size());
     std::vector<std::string> problems(images.size());
     SizeCheck const reserve = [&](int width, int height) {
@@ -46,14 +72,12 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
             if (image.bytes.empty() && image.file.empty()) {
                 throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
             }
-            if (image.bytes.empty()) { // else they have been counted
-                std::error_code code; // where it is set, reading says so
-                std::uintmax_t const size = std::filesystem::file_size(image.file, code);
-                budget.reserve(code ? 0 : size, 1);
-            }
-            pictures[i] =
-                std::make_shared<Picture const>(image.bytes.empty() ? read_picture(image.file, reserve)
-                                                                    : read_picture(image.bytes, image.name, reserve));
+            std::vector<std::byte> const in_file =
+                image.bytes.empty() ? read_file(image.file, folder, budget) : std::vector<std::byte>();
+            auto const bytes = image.bytes.empty() ? std::span(in_file) : image.bytes; // else they have been counted
+            Reserved const beside(budget, bytes_beside(bytes));
+            pictures[i] = std::make_shared<Picture const>(
+                read_picture(bytes, image.bytes.empty() ? image.file.string() : image.name, reserve));
         } catch (SceneTooLarge const&) {
             throw;
         } catch (InputError const& error) {

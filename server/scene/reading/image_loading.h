@@ -10,6 +10,7 @@
 
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/progress.h"
+#include "server/scene/reading/scene_folder.h"
 #include "server/scene/scene.h"
 
 namespace framelet {
@@ -23,10 +24,11 @@ struct EncodedImage {
     std::string problem = {}; ///< why there is nothing to decode, where that is known
 };
 
-/// Decodes all images. One that is missing or broken is null, with one line in `warnings` that names it. Throws
-/// SceneTooLarge before one is decoded for which the budget has no room.
-std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, ImportBudget& budget,
-                                                        std::vector<std::string>& warnings, Progress const& progress);
+/// Decodes all images, of files those that `folder` opens. One that is missing or broken is null, with one line in
+/// `warnings` that names it. Throws SceneTooLarge before one is decoded for which the budget has no room.
+std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage const> images, SceneFolder const& folder,
+                                                        ImportBudget& budget, std::vector<std::string>& warnings,
+                                                        Progress const& progress);
 
 /// Removes images that are null, the textures that use them, and the uses of those by materials.
 void drop_missing_images(Scene& scene);

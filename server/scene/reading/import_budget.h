@@ -32,6 +32,9 @@ public:
         }
     }
 
+    /// Gives back what was reserved for a while.
+    void give_back(std::uint64_t bytes) { taken_ -= bytes; }
+
     /// Bytes that can still be reserved.
     std::uint64_t left() const { return bytes_ - std::min(bytes_, taken_.load()); }
 

@@ -6,7 +6,9 @@
 #include <chrono>
 #include <csignal>
 #include <cstring>
+#include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -18,6 +20,7 @@
 
 #include "common/counted.h"
 #include "common/error.h"
+#include "common/pipe.h"
 
 namespace framelet {
 namespace {
@@ -25,50 +28,20 @@ namespace {
 constexpr int look_milliseconds = 100; ///< between reports of progress
 constexpr std::size_t most_text = 4096;
 
-InputError not_started(int error) {
-    return InputError(std::string("no process can be started that would read it first: ") + std::strerror(error));
+/// Adds what is there to `text`, of which the end is kept; false at the end.
+bool read(int descriptor, std::string& text) {
+    std::array<char, 4096> some;
+    ssize_t const bytes = ::read(descriptor, some.data(), some.size());
+    text.append(some.data(), static_cast<std::size_t>(std::max<ssize_t>(bytes, 0)));
+    text.erase(0, text.size() - std::min(text.size(), most_text));
+    return bytes > 0;
 }
-
-/// A pipe, closed at the end of the scope.
-class Pipe {
-public:
-    Pipe() {
-        if (::pipe2(ends_.data(), O_CLOEXEC) != 0) {
-            throw not_started(errno);
-        }
-    }
-    ~Pipe() {
-        ::close(ends_[0]);
-        close_writing();
-    }
-    Pipe(Pipe const&) = delete;
-    Pipe& operator=(Pipe const&) = delete;
-
-    int reading() const { return ends_[0]; }
-    int writing() const { return ends_[1]; }
-    void close_writing() {
-        if (ends_[1] >= 0) {
-            ::close(std::exchange(ends_[1], -1));
-        }
-    }
-    /// Adds what is there to `text`, of which the end is kept; false at the end.
-    bool read(std::string& text) const {
-        std::array<char, 4096> some;
-        ssize_t const bytes = ::read(reading(), some.data(), some.size());
-        text.append(some.data(), static_cast<std::size_t>(std::max<ssize_t>(bytes, 0)));
-        text.erase(0, text.size() - std::min(text.size(), most_text));
-        return bytes > 0;
-    }
-
-private:
-    std::array<int, 2> ends_{-1, -1};
-};
 
 /// A program at work, which is killed where it has not ended at the end of the scope. Its errors are read, and that it
 /// says something else.
 class Program {
 public:
-    /// Throws InputError where it cannot be started.
+    /// Throws std::system_error where it cannot be started.
     Program(std::filesystem::path const& program, std::vector<std::string> words) {
         words.insert(words.begin(), "framelet-server");
         std::vector<char*> arguments;
@@ -77,7 +50,7 @@ public:
         }
         arguments.push_back(nullptr);
         if (int const error = spawn(program, arguments.data())) {
-            throw not_started(error);
+            throw std::system_error(error, std::generic_category());
         }
         signs_.close_writing();
         errors_.close_writing();
@@ -107,12 +80,13 @@ public:
             if (::poll(wanted.data(), wanted.size(), look_milliseconds) <= 0) {
                 continue;
             }
-            if (wanted[0].revents != 0 && !errors_.read(text)) {
+            if (wanted[0].revents != 0 && !read(errors_.reading(), text)) {
                 return text;
             }
             if (wanted[1].revents != 0) {
                 last_sign = steady_clock::now();
-                wanted[1].fd = signs_.read(ignored) ? wanted[1].fd : -1; // at its end it is looked at no more
+                wanted[1].fd =
+                    read(signs_.reading(), ignored) ? wanted[1].fd : -1; // at its end it is looked at no more
             }
         }
     }
@@ -171,15 +145,21 @@ std::string complaint(std::string text, std::filesystem::path const& file) {
 } // namespace
 
 void check_import(std::filesystem::path const& file, ImportOptions const& options, Progress const& progress) {
-    std::vector<std::string> words{"--info", "--progress-lines", "--quiet", "--scene-memory",
-                                   std::to_string(std::max<std::uint64_t>(options.memory_bytes >> 20, 1))};
+    std::vector<std::string> words{
+        "--info",  "--news",         "1",
+        "--quiet", "--scene-memory", std::to_string(std::max<std::uint64_t>(options.memory_bytes >> 20, 1))};
     if (options.allow_outside) {
         words.emplace_back("--allow-outside");
     }
     words.insert(words.end(), {"--", file.string()});
-    Program program(options.checker, std::move(words));
-    std::string const text = complaint(program.read_errors(progress, options.checker_patience), file);
-    int const status = program.wait();
+    std::optional<Program> program;
+    try {
+        program.emplace(options.checker, std::move(words));
+    } catch (std::system_error const& error) {
+        throw InputError("no process can be started that would read it first: " + error.code().message());
+    }
+    std::string const text = complaint(program->read_errors(progress, options.checker_patience), file);
+    int const status = program->wait();
     if (WIFSIGNALED(status)) {
         throw InputError(std::string("it ends the process that reads it: ") + ::strsignal(WTERMSIG(status)));
     }

@@ -1,6 +1,7 @@
 #include "server/scene/reading/scene_folder.h"
 
 #include <algorithm>
+#include <utility>
 
 namespace framelet {
 
@@ -15,15 +16,21 @@ bool SceneFolder::note(std::filesystem::path const& file) const {
     return true;
 }
 
-bool SceneFolder::permits(std::filesystem::path const& file) const {
-    if (allow_outside_) {
-        return note(file);
-    }
-    std::error_code code;
-    std::filesystem::path const canonical = std::filesystem::weakly_canonical(file, code);
+bool SceneFolder::has(std::filesystem::path const& canonical) const {
     // Paths are compared part by part: /scenes/car2 does not lie in /scenes/car.
     auto const [rest, _] = std::mismatch(canonical_.begin(), canonical_.end(), canonical.begin(), canonical.end());
-    return !code && rest == canonical_.end() && note(file);
+    return rest == canonical_.end();
+}
+
+bool SceneFolder::permits(std::filesystem::path const& file) const {
+    std::error_code code;
+    return (allow_outside_ || (has(std::filesystem::weakly_canonical(file, code)) && !code)) && note(file);
+}
+
+std::optional<RegularFile> SceneFolder::open(std::filesystem::path const& file) const {
+    RegularFile opened(file);
+    bool const may_be_read = opened && (allow_outside_ || has(opened.canonical()));
+    return may_be_read ? std::optional(std::move(opened)) : std::nullopt;
 }
 
 } // namespace framelet

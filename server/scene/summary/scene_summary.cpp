@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/counted.h"
+#include "common/one_line.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
 #include "server/scene/summary/visibility.h"
@@ -33,10 +34,8 @@ Json three(Vec3 const& v) {
 }
 
 /// A file may call things as it likes, with line breaks and what a terminal obeys too.
-std::string shown(std::string name) {
-    std::replace_if(
-        name.begin(), name.end(), [](unsigned char c) { return c < 0x20 || c == 0x7f; }, ' ');
-    return name.empty() ? "(no name)" : name;
+std::string shown(std::string const& name) {
+    return name.empty() ? "(no name)" : to_one_line(name);
 }
 
 /// The one place that knows what is said; text and JSON have the same content.

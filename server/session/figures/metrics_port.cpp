@@ -95,11 +95,15 @@ struct MetricsPort::Impl {
 
     void answer(tcp::socket socket) {
         std::erase_if(visits, [](auto const& visit) { return visit.expired(); });
-        if (visits.size() < most_connections) {
-            auto const visit = std::make_shared<Visit>(std::move(socket), figures);
-            visits.push_back(visit);
-            visit->read();
+        if (visits.size() == most_connections) { // whoever has a question has most likely asked it by now
+            if (auto const oldest = visits.front().lock()) {
+                oldest->stream.close();
+            }
+            visits.erase(visits.begin());
         }
+        auto const visit = std::make_shared<Visit>(std::move(socket), figures);
+        visits.push_back(visit);
+        visit->read();
     }
 
     void run() {

@@ -13,7 +13,7 @@ namespace framelet {
 
 class MetricsPort {
 public:
-    /// Most connections at a time; others are closed at once.
+    /// Most connections at a time; another one costs the oldest its place.
     static constexpr std::size_t most_connections = 16;
 
     /// Binds. Throws InputError where the address cannot be had.

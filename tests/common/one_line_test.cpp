@@ -1,4 +1,4 @@
-#include "protocol/messages/text.h"
+#include "common/one_line.h"
 
 #include <random>
 
@@ -7,7 +7,7 @@
 namespace framelet {
 namespace {
 
-TEST(Text, OneLineOfUtf8) {
+TEST(OneLine, OneLineOfUtf8) {
     for (char const* good : {"", "plain ~", "\u00e9\u4e16\U0001f600", "\u00a0", "\uffff", "\U0010ffff"}) {
         EXPECT_TRUE(is_one_line(good)) << good;
         EXPECT_EQ(to_one_line(good, 100), good);
@@ -22,13 +22,13 @@ TEST(Text, OneLineOfUtf8) {
     }
 }
 
-TEST(Text, IsCutBetweenCharacters) {
+TEST(OneLine, IsCutBetweenCharacters) {
     EXPECT_EQ(to_one_line("a\u4e16\u4e16", 6), "a\u4e16");
     EXPECT_EQ(to_one_line("a\u4e16\u4e16", 7), "a\u4e16\u4e16");
     EXPECT_EQ(to_one_line("abc", 0), "");
 }
 
-TEST(Text, AnyBytesBecomeText) {
+TEST(OneLine, AnyBytesBecomeText) {
     std::mt19937 random(1);
     for (int i = 0; i < 20000; ++i) {
         std::string text(random() % 12, '\0');

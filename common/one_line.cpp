@@ -1,4 +1,4 @@
-#include "protocol/messages/text.h"
+#include "common/one_line.h"
 
 #include <cstdint>
 
