@@ -239,6 +239,20 @@ TEST(CameraController, LooksToWhereThePointerGoes) {
     EXPECT_EQ(controller.camera().position, position);
 }
 
+TEST(CameraController, WhatTheHandsDoNotMoveStaysWhereItIsToTheLastBit) {
+    Stage const stage(20000);
+    CameraController controller(stage.home, stage.scene);
+    controller.fit(viewport);
+    Vec3 const position = controller.camera().position;
+    for (int i = 0; i < 20; ++i) {
+        controller.look({7, 3}, viewport);
+        controller.orbit({0, 0}, viewport);
+        controller.pan({0, 0}, viewport);
+        controller.dolly(0);
+    }
+    EXPECT_EQ(controller.camera().position, position);
+}
+
 TEST(CameraController, TheWheelMakesFlyingFasterWithinBounds) {
     CameraController controller(look_at({0, 0, 0}, {0, 0, -1}, {0, 1, 0}, 0.8f), {{-1, -1, -1}, {1, 1, 1}});
     float const before = controller.fly_speed();

@@ -76,6 +76,9 @@ void CameraController::turn(float yaw, float pitch) {
 }
 
 void CameraController::orbit(Vec2 pixels, Viewport viewport) {
+    if (pixels == Vec2(0, 0)) { // to go around a pivot that is far away moves the camera by its rounding
+        return;
+    }
     Vec3 const center = pivot();
     Vec2 const angle = pixels * (pi / static_cast<float>(viewport.height));
     turn(-angle.x, -angle.y);
@@ -96,6 +99,9 @@ void CameraController::pan(Vec2 pixels, Viewport viewport) {
 }
 
 void CameraController::dolly(float steps) {
+    if (steps == 0) { // likewise
+        return;
+    }
     float const scale = std::pow(dolly_step, steps);
     if (camera_.projection == Projection::orthographic) {
         camera_.vertical_extent = std::clamp(camera_.vertical_extent * scale, 1e-5f * size_, 1e3f * size_);
