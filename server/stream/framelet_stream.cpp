@@ -61,7 +61,7 @@ void FrameletStream::take(StreamEvent const& event) {
         moments_.forget();
         complete_ = false;
     } else {
-        moments_.forget();
+        moments_.note_clock_set();
     }
 }
 

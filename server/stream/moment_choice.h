@@ -40,9 +40,11 @@ public:
     double standing_seconds() const { return standing_seconds_; }
     /// The moment to render; nothing where the present is.
     std::optional<HeldMoment> const& held() const { return held_; }
-    /// Ends the moment that is held, so that the next begins anew, as after the scene's clock was set.
-    void forget() {
-        held_.reset();
+    /// Ends the moment that is held, so that the next begins anew.
+    void forget() { held_.reset(); }
+    /// The same where the scene's clock was set.
+    void note_clock_set() {
+        forget();
         is_stop_ = true;
     }
 

@@ -101,7 +101,7 @@ TEST(MomentChoice, AfterTheClockWasSetTheMomentIsCompletedFirst) {
     for (bool const completes : {false, true}) {
         MomentChoice moments;
         choose(moments, state_at(1), 9.99, true);
-        moments.forget();
+        moments.note_clock_set();
         ASSERT_TRUE(choose(moments, state_at(1.1), 10, true, 1));
         if (completes) {
             moments.note_complete(10.01);
@@ -111,7 +111,7 @@ TEST(MomentChoice, AfterTheClockWasSetTheMomentIsCompletedFirst) {
         EXPECT_FALSE(choose(moments, state_at(1.1), 10 + 1.1 * stop_seconds, true, 1));
         ASSERT_TRUE(choose(moments, state_at(3), 12, true, 1)); // the clock goes on
         EXPECT_FALSE(choose(moments, state_at(3), 12 + 1.1 * rest_seconds, true, 1)) << "nobody set it this time";
-        moments.forget();
+        moments.note_clock_set();
         ASSERT_TRUE(choose(moments, state_at(9), 14, true, 1));
         EXPECT_FALSE(choose(moments, state_at(9), 14 + 1.1 * rest_seconds, true, 1)) << "nothing of that time is held";
     }
