@@ -118,15 +118,15 @@ std::vector<HelpGroup> help_groups(std::string const& clock_lacks) {
     return out;
 }
 
-std::size_t left_groups(std::span<HelpGroup const> groups) {
+std::size_t left_groups(std::span<HelpGroup const> shown) {
     std::size_t right = 0;
-    for (HelpGroup const& group : groups) {
+    for (HelpGroup const& group : shown) {
         right += group.rows.size() + 1;
     }
     std::size_t out = 0, left = 0, least = right;
-    for (std::size_t i = 0; i < groups.size(); ++i) {
-        left += groups[i].rows.size() + 1;
-        right -= groups[i].rows.size() + 1;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        left += shown[i].rows.size() + 1;
+        right -= shown[i].rows.size() + 1;
         if (std::max(left, right) <= least) {
             least = std::max(left, right);
             out = i + 1;

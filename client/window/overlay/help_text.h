@@ -37,7 +37,7 @@ std::vector<HelpGroup> help_groups(std::string const& clock_lacks);
 
 /// The number of groups that stand on the left where the help has two columns, of which the higher one is as low as can
 /// be.
-std::size_t left_groups(std::span<HelpGroup const> groups);
+std::size_t left_groups(std::span<HelpGroup const> shown);
 
 /// The help's words for one command, for the tooltip of what does the same by mouse. All numbered cameras of a kind
 /// have the same.
