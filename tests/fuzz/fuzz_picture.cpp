@@ -33,11 +33,12 @@ void fill_fresh(void const volatile* memory, std::size_t bytes) {
 }
 
 /// The picture; null where the file is none, or is too large.
-std::shared_ptr<Picture const> read_texture(EncodedImage const& image) {
+std::shared_ptr<Picture const> read_texture(EncodedImage const& image, SceneFolder const& folder) {
     ImportBudget budget(memory_bytes);
     std::vector<std::string> warnings;
     try {
-        auto const pictures = load_images(std::span(&image, 1), budget, warnings, [](std::string_view, double) {});
+        auto const pictures =
+            load_images(std::span(&image, 1), folder, budget, warnings, [](std::string_view, double) {});
         FRAMELET_CHECK(pictures.size() == 1 && warnings.size() == (pictures[0] ? 0 : 1));
         FRAMELET_CHECK(!pictures[0] || pictures[0]->rgba.size() <= memory_bytes);
         return pictures[0];
@@ -70,10 +71,11 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     FRAMELET_CHECK(fills);
     std::span<std::byte const> const bytes = std::as_bytes(std::span(data, size));
     InputFile const file(data, size, ".picture");
+    SceneFolder const folder(file.path(), false);
     fresh = 0x2e;
-    auto const from_memory = read_texture({"picture", bytes, {}});
+    auto const from_memory = read_texture({"picture", bytes, {}}, folder);
     fresh = 0xd1;
-    auto const from_file = read_texture({"picture", {}, file.path()});
+    auto const from_file = read_texture({"picture", {}, file.path()}, folder);
     // Of the file the bytes count as well: it may be the one that is too large.
     FRAMELET_CHECK(!from_file || (from_memory && *from_file == *from_memory));
     if (picture_format(bytes) == PictureFormat::hdr) {
