@@ -5,7 +5,6 @@
 #include <csignal>
 #include <fstream>
 #include <sstream>
-#include <thread>
 #include <vector>
 
 #include <fcntl.h>
@@ -127,26 +126,6 @@ TEST(Video, AReaderThatGoesEndsTheClientWithALine) {
     EXPECT_EQ(piped.output(), "100000\n0\n");
     EXPECT_NE(piped.errors().find("framelet-client: nobody reads the video any more\n"), std::string::npos)
         << piped.errors();
-}
-
-TEST(Video, ASecondSignalEndsAClientWhoseReaderHasStopped) {
-    ServerProcess server(scene_file);
-    TemporaryFolder folder;
-    std::string const pid_file = (folder.path() / "pid").string();
-    Process piped("/bin/bash",
-                  {"-c",
-                   "(echo $BASHPID > \"$2\"; exec \"$0\" \"$1\" --size 640x360 --duration 100 --output -) | "
-                   "(head -c 1000000 > \"$3\"; echo > \"$3.done\"; exec sleep 100)",
-                   FRAMELET_CLIENT, server.address(), pid_file, (folder.path() / "video").string()});
-    ASSERT_TRUE(eventually([&] { return std::filesystem::exists(folder.path() / "video.done"); })) << piped.errors();
-    std::ifstream stream(pid_file);
-    pid_t client = 0;
-    ASSERT_TRUE(stream >> client);
-    ::kill(client, SIGTERM);
-    std::this_thread::sleep_for(1s);
-    EXPECT_EQ(::kill(client, 0), 0) << "what was shown waits for its reader";
-    ::kill(client, SIGTERM);
-    EXPECT_TRUE(eventually([&] { return ::kill(client, 0) != 0; }));
 }
 
 TEST(Video, AFilmOfAMovingSceneIsAnAnimation) {
