@@ -116,7 +116,7 @@ void Viewer::go_to_bookmark(int number) {
 
 void Viewer::copy_camera(bool saves) {
     try {
-        std::string const text = camera_file_text(present_camera());
+        std::string const text = camera_file_text(present_camera(), scene_origin_);
         if (!saves) {
             window_.set_clipboard(text);
             say("camera copied, as framelet-client --camera reads it");
