@@ -7,7 +7,9 @@
 #include <new>
 #include <utility>
 
+#include <openssl/err.h>
 #include <openssl/pem.h>
+#include <openssl/x509.h>
 #include <openssl/x509_vfy.h>
 
 #include "common/error.h"
@@ -52,9 +54,21 @@ void require(boost::system::error_code const& error, std::string const& what, st
     bool const swapped = std::filesystem::is_regular_file(file) &&
                          holds(file, wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
                          !holds(file, wants_key ? "PRIVATE KEY" : "CERTIFICATE");
+    std::error_code code;
+    bool const is_locked = wants_key && holds(file, "ENCRYPTED");
+    int const reason = ERR_GET_REASON(static_cast<unsigned long>(error.value()));
+    bool const is_foreign = wants_key && reason == X509_R_KEY_VALUES_MISMATCH;
     std::string const mistaken = wants_key ? "it is a certificate, not a private key: give the key here"
                                            : "it is a private key, not a certificate: give the certificate here";
-    throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
+    std::string const why = swapped                                         ? mistaken
+                            : is_locked                                     ? "it is locked with a password, for which "
+                                                                              "a server cannot ask: give it without"
+                            : is_foreign                                    ? "it is the key of another certificate"
+                            : !std::filesystem::exists(file, code)          ? "there is no such file"
+                            : !std::filesystem::is_regular_file(file, code) ? "it is not a file"
+                            : !holds(file, "-----BEGIN")                    ? "there is none in it"
+                                                                            : error.message();
+    throw InputError(what + " '" + file + "' cannot be used: " + why);
 }
 
 /// Throws std::bad_alloc where there is no memory for it.
