@@ -150,7 +150,7 @@ TEST(PlyFile, ABadLineCostsThatLine) {
     for (std::string const line : {"3 0 1 9", "3 0 1", "x", "3 0 1 -1", "-3 0 1 2"}) {
         Scene const scene = scene_of(line);
         EXPECT_EQ(triangles_of(scene), 2u) << line;
-        EXPECT_EQ(joined(scene.warnings), "a.ply, line 14: a face that cannot be read; passed over\n") << line;
+        EXPECT_EQ(joined(scene.warnings), "a.ply, line 15: a face that cannot be read; passed over\n") << line;
     }
     EXPECT_EQ(joined(scene_of("3 0 1 2").warnings), "");
 }

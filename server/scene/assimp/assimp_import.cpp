@@ -91,7 +91,24 @@ struct LeftOut {
     std::size_t broken = 0; ///< with corners that are no numbers
 };
 
-/// Replaces polygons by triangles; drops points, lines and what cannot be shown, and counts them. Assimp's own step
+/// Drops polygons with corners that are no numbers, and counts them: smoothing would spread these.
+void drop_broken_faces(aiMesh& mesh, LeftOut& left_out) {
+    unsigned kept = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        aiFace& face = mesh.mFaces[f];
+        bool const is_whole = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+                                          [&](unsigned i) { return in_range(to_vec3(mesh.mVertices[i])); });
+        if (is_whole) {
+            std::swap(mesh.mFaces[kept].mNumIndices, face.mNumIndices);
+            std::swap(mesh.mFaces[kept].mIndices, face.mIndices);
+            ++kept;
+        }
+    }
+    left_out.broken += mesh.mNumFaces - kept;
+    mesh.mNumFaces = kept;
+}
+
+/// Replaces polygons by triangles; drops points and lines, and counts them. Assimp's own step
 /// leaves holes in polygons that cross themselves (24 triangles of 116,501 in one model tried).
 void triangulate_faces(aiMesh& mesh, LeftOut& left_out) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -103,10 +120,6 @@ void triangulate_faces(aiMesh& mesh, LeftOut& left_out) {
         corners.clear();
         for (unsigned i = 0; i < face.mNumIndices; ++i) {
             corners.push_back(to_vec3(mesh.mVertices[face.mIndices[i]]));
-        }
-        if (!std::ranges::all_of(corners, [](Vec3 const& corner) { return in_range(corner); })) {
-            ++left_out.broken;
-            continue;
         }
         for (auto const& [a, b, c] : triangulate(corners)) {
             triangles.push_back({face.mIndices[a], face.mIndices[b], face.mIndices[c]});
@@ -198,6 +211,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
         std::vector<std::vector<aiVector3D>> normals; // those of each mesh that are kept beside new ones
         if (from && held.call([&] { progress("triangulating", 0); })) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
+                drop_broken_faces(*from->mMeshes[m], left_out);
                 normals.push_back(take_normals(*from->mMeshes[m]));
                 triangulate_faces(*from->mMeshes[m], left_out);
                 held.call([&] { progress("triangulating", (m + 1.0) / from->mNumMeshes); });
