@@ -121,6 +121,11 @@ TEST(ObjFile, SmoothingGroupsSayWhichEdgesAreSharp) {
     EXPECT_EQ(count_soft(bent(folder, "s off\n", "")), 0u);
     EXPECT_EQ(count_soft(bent(folder, "s 1\n", "s 0\n")), 0u);
     EXPECT_EQ(count_soft(bent(folder, "", "")), 0u) << "above the crease angle";
+    Scene const turned = import_scene(folder.write(
+        "a.obj", square + "v 2 0 0.2\nv 2 1 0.2\ns 1\nf 1 2 3 4\nf 3 6 5 2\n")); // the second one the other way round
+    for (Vec3 const& n : turned.meshes.at(0).primitives.at(0).normals) {
+        EXPECT_GT(std::abs(n.z), 0.9f);
+    }
 }
 
 TEST(ObjFile, ColoursOfVerticesMayBeBytes) {

@@ -23,6 +23,8 @@ namespace {
 constexpr std::uint64_t bytes_of_corner = 120;
 /// Cosine of the angle up to which edges are smooth where the file does not say: 66 degrees.
 constexpr float crease_cosine = 0.4067366f;
+/// Cosine of the angle from which on a face of the same group is taken for one that is wound the other way.
+constexpr float backwards_cosine = -0.5f;
 /// Corners that meet in one point beyond this number are flat: smoothing by angle takes the square of it.
 constexpr std::size_t most_smoothed = 1024;
 
@@ -144,10 +146,11 @@ void make_normals(Vertices& v, Progress const& progress) {
         Vec3 sum(0);
         if (smoothing != 0 && around.size() <= most_smoothed) {
             for (std::uint32_t const other : around) {
+                float const cosine = glm::dot(face_normals[meeting.face[other]], face_normals[face]);
                 bool const is_smooth =
                     smoothing == PolygonSoup::by_angle
-                        ? glm::dot(face_normals[meeting.face[other]], face_normals[face]) >= crease_cosine
-                        : faces[meeting.face[other]].smoothing == smoothing;
+                        ? cosine >= crease_cosine
+                        : cosine >= backwards_cosine && faces[meeting.face[other]].smoothing == smoothing;
                 sum += is_smooth ? meeting.weighted[other] : Vec3(0);
             }
         }
