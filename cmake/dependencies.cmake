@@ -35,4 +35,6 @@ if(FRAMELET_SERVER)
   endif()
   message(STATUS "Embree ${embree_VERSION}")
   pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)
+  pkg_check_modules(utf8proc REQUIRED IMPORTED_TARGET libutf8proc)
+  set_property(TARGET PkgConfig::utf8proc PROPERTY INTERFACE_COMPILE_OPTIONS "") # as with OpenEXR
 endif()

@@ -13,7 +13,7 @@ FrameLog::FrameLog(std::filesystem::path const& file) : file_(file), stream_(fil
 }
 
 void FrameLog::add(FrameEntry const& entry) {
-    Vec3 const& position = entry.camera.position;
+    glm::dvec3 const position = entry.origin + glm::dvec3(entry.camera.position);
     Quat const& turn = entry.camera.orientation;
     nlohmann::ordered_json const line = {{"frame", entry.frame},
                                          {"unix_seconds", entry.unix_seconds},

@@ -21,7 +21,8 @@ struct FrameEntry {
     std::uint64_t samples = 0; ///< received since the start
     double photon_seconds = -1; ///< as `ClientStatistics` says
     int scene_camera = -1; ///< camera of the scene that was looked through; -1: `camera`
-    Camera camera; ///< the one that was asked for
+    Camera camera; ///< the one that was asked for, from `origin`
+    glm::dvec3 origin{0, 0, 0}; ///< as `Welcome::scene_origin`
 };
 
 class FrameLog {

@@ -72,9 +72,12 @@ void Viewer::look_at_scene() {
     Welcome const welcome = core_->welcome();
     scene_number_ = core_->scene_number();
     bool const is_changed = controller_ && welcome.scene_name == scene_name_ && welcome.scene_source == scene_source_;
-    std::optional<Camera> const before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
-    if (!bookmarks_ || !is_changed) {
-        bookmarks_.emplace(bookmark_files(welcome.scene_name, welcome.scene_source));
+    std::optional<Camera> before = is_changed ? std::optional(controller_->camera()) : std::nullopt;
+    if (before) {
+        before->position += Vec3(scene_origin_ - welcome.scene_origin);
+    }
+    if (!bookmarks_ || !is_changed || scene_origin_ != welcome.scene_origin) {
+        bookmarks_.emplace(bookmark_files(welcome.scene_name, welcome.scene_source), welcome.scene_origin);
         bookmark_ = -1;
         is_at_bookmark_ = false;
         if (!bookmarks_->complaint().empty()) {
@@ -89,6 +92,7 @@ void Viewer::look_at_scene() {
     core_->set_settings(settings_);
     scene_name_ = welcome.scene_name;
     scene_source_ = welcome.scene_source;
+    scene_origin_ = welcome.scene_origin;
     controller_.emplace(welcome.start_camera, welcome.scene_bounds);
     controller_->set_speed_factor(memory_.fly_speed);
     if (before) {

@@ -103,6 +103,7 @@ private:
     bool controlled_ = true; ///< what `ClientCore::controls` said last
     std::string scene_name_;
     std::uint64_t scene_source_ = 0; ///< as in Welcome
+    glm::dvec3 scene_origin_{0, 0, 0}; ///< likewise
     std::optional<CameraController> controller_;
     int scene_camera_ = -1;
     std::optional<Bookmarks> bookmarks_; ///< the scene's

@@ -131,7 +131,7 @@ void Viewer::copy_camera(bool saves) {
         moment.paused = !clock.playing;
     }
     moment.exposure_ev = settings_.exposure_ev;
-    std::string const text = camera_file_text(present_camera(), moment);
+    std::string const text = camera_file_text(present_camera(), moment, scene_origin_);
     if (!saves) {
         window_.set_clipboard(text);
         say("view copied: " + key_names(Command::paste_camera) + " goes to it, --camera reads it");
@@ -163,7 +163,7 @@ void Viewer::take_camera(CameraPath const& path) {
         choose_scene_camera(path.scene_camera);
     } else {
         scene_camera_ = -1;
-        controller_->set_camera(path.at(0));
+        controller_->set_camera(path.at(0, scene_origin_));
     }
     settings_.exposure_ev = path.moment.exposure_ev.value_or(settings_.exposure_ev);
     core_->set_settings(settings_);

@@ -155,7 +155,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         double const now = seconds_since(start);
         bool const done = options.until_converged && now >= path_duration && core.is_complete();
         int const scene_camera = path ? path->scene_camera : start_scene_camera(welcome);
-        Camera const camera = path && scene_camera < 0 ? path->at(now) : welcome.start_camera;
+        Camera const camera = path && scene_camera < 0 ? path->at(now, welcome.scene_origin) : welcome.start_camera;
         if (!done) {
             core.set_view(camera, viewport, scene_camera);
         }
@@ -169,7 +169,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         if (log != nullptr) {
             log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
-                      statistics.photon_seconds, scene_camera, camera});
+                      statistics.photon_seconds, scene_camera, camera, welcome.scene_origin});
         }
         if (sheet != nullptr) {
             sheet->note(seconds_since(start), picture,

@@ -22,7 +22,7 @@ RegularFile::RegularFile(std::filesystem::path const& file) {
     int const place = ::open(file.c_str(), O_PATH | O_CLOEXEC); // which opens nothing yet
     struct stat found {};
     if (place < 0 || ::fstat(place, &found) != 0) {
-        problem_ = std::strerror(errno);
+        problem_ = errno == ENOENT ? "there is no such file" : std::strerror(errno);
     } else if (!S_ISREG(found.st_mode)) {
         problem_ = S_ISDIR(found.st_mode) ? "it is a folder" : "it is not a file";
     } else if (descriptor_ = ::open(name_of(place).c_str(), O_RDONLY | O_CLOEXEC); descriptor_ < 0) {

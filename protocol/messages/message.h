@@ -118,6 +118,7 @@ struct Welcome {
     bool resumed = false; ///< the session before goes on: what the viewer holds of it stays, what it lacks comes again
     std::uint64_t evicted = 0; ///< how many messages Evicted have come, as in Status
     std::uint64_t scene_source = 0; ///< the same where it is the same file, whatever is in it by now; 0: not known
+    glm::dvec3 scene_origin{0, 0, 0}; ///< where the scene's file has the point that is (0, 0, 0) here, metres
 };
 
 /// The encoding of a batch's samples, numbered as on the wire.

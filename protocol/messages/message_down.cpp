@@ -70,10 +70,12 @@ Offset<wire::Welcome> write(Builder& builder, Welcome const& value) {
     auto const scene = write_text(builder, value.scene_name, max_name_bytes);
     auto const start = write(builder, value.start_camera);
     wire::Ticket const ticket = write(value.ticket);
+    wire::Vec3d const origin(value.scene_origin.x, value.scene_origin.y, value.scene_origin.z);
     return wire::CreateWelcome(builder, value.version, server, scene, value.scene_bounds.empty() ? nullptr : &box,
                                start, builder.CreateVector(cameras), value.animation_duration, &clock,
                                value.scene_identity, value.controls, value.ticket ? &ticket : nullptr, value.resumed,
-                               value.evicted, value.scene_source);
+                               value.evicted, value.scene_source,
+                               value.scene_origin == glm::dvec3(0) ? nullptr : &origin);
 }
 
 Welcome read(wire::Welcome const& wire) {
@@ -104,12 +106,20 @@ Welcome read(wire::Welcome const& wire) {
     value.resumed = wire.resumed();
     value.evicted = wire.evicted();
     value.scene_source = wire.scene_source();
+    if (wire::Vec3d const* const origin = wire.scene_origin()) {
+        value.scene_origin = {origin->x(), origin->y(), origin->z()};
+    }
     return value;
 }
 
 char const* problem(Welcome const& value) {
     if (!value.scene_bounds.empty() && !is_finite_box(value.scene_bounds)) {
         return "the scene's bounds are not a box";
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+        if (!in_range(value.scene_origin[axis], -max_camera_coordinate, max_camera_coordinate)) {
+            return "the scene's origin is not within 1e10 m";
+        }
     }
     if (!is_time(value.animation_duration)) {
         return "the animation's duration is not within 0..1e9";

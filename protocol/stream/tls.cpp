@@ -6,7 +6,9 @@
 #include <new>
 #include <utility>
 
+#include <openssl/err.h>
 #include <openssl/pem.h>
+#include <openssl/x509.h>
 #include <openssl/x509_vfy.h>
 #include <sys/stat.h>
 
@@ -32,13 +34,11 @@ std::shared_ptr<ssl::context> make_context(SSL_METHOD const* method) {
     return context;
 }
 
-/// True where a line of the file, as "-----BEGIN RSA PRIVATE KEY-----", says that a thing of this kind follows.
-bool holds(std::string const& file, std::string const& kind) {
+/// True where a line of the file has the text, which may be the end of "-----BEGIN RSA PRIVATE KEY-----".
+bool holds(std::string const& file, std::string_view text) {
     std::ifstream lines(file);
-    std::string const end = kind + "-----";
     for (std::string line; std::getline(lines, line);) {
-        line.erase(line.find_last_not_of(" \r") + 1);
-        if (line.starts_with("-----BEGIN ") && line.ends_with(end)) {
+        if (line.find(text) != std::string::npos) {
             return true;
         }
     }
@@ -51,11 +51,19 @@ void require(boost::system::error_code const& error, std::string const& what, st
         return;
     }
     bool const wants_key = what == "TLS key";
-    bool const swapped = holds(opened.name(), wants_key ? "CERTIFICATE" : "PRIVATE KEY") &&
-                         !holds(opened.name(), wants_key ? "PRIVATE KEY" : "CERTIFICATE");
+    bool const swapped = holds(opened.name(), wants_key ? "CERTIFICATE-----" : "PRIVATE KEY-----") &&
+                         !holds(opened.name(), wants_key ? "PRIVATE KEY-----" : "CERTIFICATE-----");
+    bool const is_locked = wants_key && holds(opened.name(), "ENCRYPTED");
+    int const reason = ERR_GET_REASON(static_cast<unsigned long>(error.value()));
+    bool const is_foreign = wants_key && reason == X509_R_KEY_VALUES_MISMATCH;
     std::string const mistaken = wants_key ? "it is a certificate, not a private key: give the key here"
                                            : "it is a private key, not a certificate: give the certificate here";
-    throw InputError(what + " '" + file + "' cannot be used: " + (swapped ? mistaken : error.message()));
+    std::string const why = swapped     ? mistaken
+                            : is_locked ? "it is locked with a password, for which a server cannot ask: give it without"
+                            : is_foreign                           ? "it is the key of another certificate"
+                            : !holds(opened.name(), "-----BEGIN ") ? "there is none in it"
+                                                                   : error.message();
+    throw InputError(what + " '" + file + "' cannot be used: " + why);
 }
 
 /// Throws InputError where there is no such file: a library would wait for a pipe.

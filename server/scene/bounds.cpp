@@ -66,7 +66,9 @@ Camera default_camera(Bounds const& bounds) {
         distance = std::max({distance, std::abs(glm::dot(offset, turned.right())) / tan_x - depth,
                              std::abs(glm::dot(offset, turned.up())) / tan_y - depth});
     }
-    float const least = std::max(1e-3f, 1e-4f * glm::length(center)); // a box without size, or far from the origin
+    Vec3 const size = box.size();
+    bool const is_point = size.x + size.y + size.z == 0;
+    float const least = std::max(is_point ? 1e-3f : 0.0f, 1e-4f * glm::length(center)); // what is far is less exact
     return within_bounds(look_at(center + direction * std::max(distance, least), center, Vec3(0, 1, 0), vertical_fov));
 }
 

@@ -120,9 +120,10 @@ inline std::size_t count_triangles(Mesh const& mesh) {
     return count;
 }
 
-/// Translation, rotation and scale, applied as T * R * S.
+/// Translation, rotation and scale, applied as T * R * S. Translations have more digits than a float: files keep
+/// coordinates of maps, of which only differences show.
 struct Transform {
-    Vec3 translation{0, 0, 0};
+    glm::dvec3 translation{0, 0, 0};
     Quat rotation{1, 0, 0, 0};
     Vec3 scale{1, 1, 1};
 };
@@ -131,7 +132,7 @@ struct Node {
     std::string name;
     Index parent = none; ///< always smaller than the node's own index
     Transform local; ///< in the parent's space; used unless `matrix` is set
-    std::optional<Mat4> matrix; ///< a local matrix as the file gives it; never animated
+    std::optional<glm::dmat4> matrix; ///< a local matrix as the file gives it; never animated
     Index mesh = none;
     Index skin = none;
     std::vector<float> morph_weights; ///< overrides the mesh's where not empty
@@ -194,6 +195,8 @@ struct Scene {
     std::vector<AnimationClip> clips;
     std::vector<Light> lights;
     std::vector<SceneCamera> cameras;
+    /// Where the files have the point that is (0, 0, 0) to whoever renders and looks; `evaluate_pose` leaves it out.
+    glm::dvec3 origin{0, 0, 0};
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
     /// Files that the scene is made of, whether they exist or not; the scene files first.
     std::vector<std::filesystem::path> files;

@@ -1,6 +1,9 @@
 #include "server/scene/scene_import.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
 #include <set>
 #include <utility>
 
@@ -8,7 +11,9 @@
 #include "common/one_line.h"
 #include "server/scene/assimp/assimp_import.h"
 #include "server/scene/finish/scene_finish.h"
+#include "server/scene/finish/scene_origin.h"
 #include "server/scene/gltf/gltf_import.h"
+#include "server/scene/mesh/mesh_import.h"
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/import_check.h"
@@ -28,7 +33,7 @@ std::string one_line(std::string text) {
 
 /// True for formats without trees.
 bool is_flat(std::string const& extension) {
-    return extension == ".obj" || extension == ".ply" || extension == ".stl" || extension == ".off";
+    return is_mesh_file(extension) || extension == ".off";
 }
 
 void check_file(std::filesystem::path const& file) {
@@ -46,6 +51,16 @@ void check_file(std::filesystem::path const& file) {
     if (code || size == 0) {
         throw InputError(code ? "it cannot be read" : "the file is empty");
     }
+}
+
+/// Says how exact positions are that were single numbers so far away.
+std::string coarseness(glm::dvec3 const& origin) {
+    double const away = std::max({std::abs(origin.x), std::abs(origin.y), std::abs(origin.z)});
+    std::array<char, 128> text{};
+    std::snprintf(text.data(), text.size(),
+                  "it lies %.0f km from its origin: positions of this format are exact to %.2g mm", away / 1000,
+                  std::exp2(std::floor(std::log2(away)) - 23) * 1000);
+    return text.data();
 }
 
 /// Every warning once, on one line; of very many the first, and how many more there are.
@@ -76,9 +91,13 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
             of_file.memory_bytes = budget.left();
             check_import(file, of_file, report);
         }
-        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
-                              : import_assimp(file, folder, budget, report, options.is_serving);
+        Scene scene = is_gltf                   ? import_gltf(file, folder, budget, options.clips, report)
+                      : is_mesh_file(extension) ? import_mesh(file, folder, budget, report)
+                                                : import_assimp(file, folder, budget, report, options.is_serving);
         finish_scene(scene, budget, report);
+        if (!is_gltf && !is_mesh_file(extension) && scene.origin != glm::dvec3(0)) {
+            scene.warnings.push_back(coarseness(scene.origin));
+        }
         scene.name = one_line(scene.name.empty() ? file.stem().string() : scene.name);
         for (AnimationClip& clip : scene.clips) {
             clip.name = one_line(clip.name);
@@ -118,6 +137,7 @@ Scene import_scenes(std::span<std::filesystem::path const> files, Progress const
             budget));
     }
     Scene out = merged_scene(std::move(scenes), words_for(files));
+    set_origin(out);
     out.warnings = condensed(out.warnings);
     return out;
 }

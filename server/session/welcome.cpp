@@ -20,6 +20,7 @@ Welcome make_welcome(Scene const& scene, std::span<Index const> clips) {
     welcome.animation_duration = animation_duration(scene, clips);
     welcome.scene_identity = scene_identity(scene);
     welcome.scene_source = scene_source(scene);
+    welcome.scene_origin = scene.origin;
     return welcome;
 }
 

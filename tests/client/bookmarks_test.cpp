@@ -69,6 +69,20 @@ TEST(Bookmarks, SurviveARestart) {
     EXPECT_EQ(Bookmarks(file).all().size(), 1u);
 }
 
+TEST(Bookmarks, KeepPlacesAsTheSceneFileCounts) {
+    OwnFolder const folder;
+    glm::dvec3 const origin(1842016, 0, -5173312);
+    Bookmarks(folder.path() / "a.json", {}, origin).add(some_camera());
+    Bookmarks(folder.path() / "b.json").add(some_camera());
+    expect_near(Bookmarks(folder.path() / "a.json", {}, origin).all().at(0).camera, some_camera());
+    Bookmarks const moved(folder.path() / "a.json", {}, origin + glm::dvec3(1, 0, 0)); // by a change of the scene
+    EXPECT_LT(glm::distance(moved.all().at(0).camera.position, some_camera().position - Vec3(1, 0, 0)), 1e-5f);
+    CameraPath const copied = parse_camera_path(camera_file_text(some_camera(), {}, origin), "test");
+    expect_near(copied.at(0, origin), some_camera());
+    EXPECT_EQ(copied.keys.at(0).position.y, 4);
+    EXPECT_NEAR(copied.keys.at(0).position.x, 1842025.1, 1e-6);
+}
+
 TEST(Bookmarks, NamesStayUnlikeEachOther) {
     OwnFolder const folder;
     Bookmarks bookmarks(folder.path() / "a.json");

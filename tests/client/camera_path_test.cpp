@@ -22,6 +22,17 @@ TEST(CameraPath, OneKeyStandsStill) {
     EXPECT_EQ(path.scene_camera, -1);
 }
 
+TEST(CameraPath, ScenesFarAwayHaveExactCameras) {
+    glm::dvec3 const origin(1842016, 0, -5173312);
+    CameraPath const path = parse_camera_path(R"({"keys":[
+        {"time":0,"position":[1842022.125,10,-5173301.0625],"target":[1842022.125,10,-5173302]},
+        {"time":1,"position":[1842024.125,10,-5173301.0625],"target":[1842024.125,10,-5173302]}]})",
+                                              "test");
+    EXPECT_EQ(path.at(0, origin).position, Vec3(6.125f, 10, 10.9375f));
+    EXPECT_LT(glm::distance(path.at(0.5, origin).position, Vec3(7.125f, 10, 10.9375f)), 1e-5f);
+    EXPECT_LT(glm::distance(path.at(0.5, origin).forward(), Vec3(0, 0, -1)), 1e-5f);
+}
+
 CameraPath flight() {
     return parse_camera_path(R"({"keys":[
         {"time":1,"position":[0,1,5],"target":[0,0,0]},

@@ -27,6 +27,8 @@ TEST(ServerAddress, IsTakenOutOfAUrl) {
     }
     EXPECT_EQ(parse_server_address("http://host/"), (ServerAddress{"host", default_port}));
     EXPECT_EQ(parse_server_address("https://[::1]:80/"), (ServerAddress{"::1", 80}));
+    EXPECT_EQ(parse_server_address("::1"), (ServerAddress{"::1", 7070}));
+    EXPECT_EQ(parse_server_address("fe80::1"), (ServerAddress{"fe80::1", 7070}));
 }
 
 TEST(ServerAddress, AUrlMaySayThatItIsEncrypted) {
@@ -50,8 +52,9 @@ TEST(ServerAddress, AUrlMaySayThatItIsEncrypted) {
 
 TEST(ServerAddress, AnythingElseIsRefused) {
     for (char const* const text :
-         {"", ":", "host:", ":7070", "host:0", "host:65536", "host:7070x", "host:-1", "a b:7070", "::1:7070", "[::1",
-          "[::1]:", "[]", "[::1]x:7070", "[]:7070", "host:+5", "http://", "me@", "/host"}) {
+         {"",         ":",        "host:", ":7070", "host:0", "host:65536", "host:7070x",  "host:-1",
+          "a b:7070", "::1:7070", "::x",   "[::1",  "[::1]:", "[]",         "[::1]x:7070", "[]:7070",
+          "host:+5",  "http://",  "me@",   "/host"}) {
         EXPECT_THROW(parse_server_address(text), InputError) << text;
     }
 }

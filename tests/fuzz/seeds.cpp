@@ -212,6 +212,10 @@ void write_files(std::filesystem::path const& folder) {
     write(folder / "scene" / "obj", bytes_of("\2o a\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvn 0 0 1\nusemtl m\nf 1/1/1 "
                                              "2/1/1 3/1/1\nf 1//1 2//1 3//1\n"));
     write(folder / "scene" / "stl", bytes_of("\3" + stl_bytes()));
+    write(
+        folder / "scene" / "ply",
+        bytes_of("\4ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                 "element face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"));
     write(folder / "scene" / "stl_text",
           bytes_of("\3solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
                    "endfacet\nendsolid s\n"));

@@ -229,20 +229,18 @@ TEST_F(Reloading, AFileThatTakesTooMuchLeavesTheSceneAsItWas) {
 #ifdef FRAMELET_SANITIZE
     GTEST_SKIP() << "the sanitizer ends a program that is refused memory";
 #endif
-    std::string const head =
-        "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float "
-        "z\nelement face 1\nproperty list uint int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n";
-    std::string const text = folder.write("scene.ply", head + "3 0 1 2\n");
+    std::string const triangle = " 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    std::string const text = folder.write("scene.off", "OFF\n3" + triangle);
     ServerProcess server(text, {"--paused", "--insecure", "--scene-memory", "64"});
     Viewer viewer(server.address());
     ASSERT_TRUE(viewer.comes_to_rest());
-    folder.write("scene.ply", head + "60000000 0 1 2\n");
+    folder.write("scene.off", "OFF\n#" + std::string(5000, 'x') + "\n60000000" + triangle);
     server.process().signal(SIGHUP);
     ASSERT_TRUE(eventually([&] { return times(server.process().errors(), "as it was is served on") > 0; }));
     EXPECT_EQ(times(server.process().errors(), "'" + text + "': it takes more than 64 MB"), 1u)
         << server.process().errors();
     EXPECT_EQ(viewer.core->statistics().reconnections, 0u);
-    folder.write("scene.ply", head + "3 0 1 2\n");
+    folder.write("scene.off", "OFF\n3" + triangle);
     server.process().signal(SIGHUP);
     EXPECT_TRUE(viewer.comes_back(1)) << server.process().errors();
 }

@@ -82,6 +82,7 @@ public:
         welcome.resumed = coin();
         welcome.evicted = any64();
         welcome.scene_source = any64();
+        welcome.scene_origin = {number(-1e10f, 1e10f), 0.1, number(-1e3f, 1e3f)};
         return welcome;
     }
 
@@ -184,7 +185,8 @@ inline bool same(Message const& left, Message const& right) {
                a->start_camera == b->start_camera && a->cameras == b->cameras &&
                a->animation_duration == b->animation_duration && a->clock == b->clock &&
                a->scene_identity == b->scene_identity && a->controls == b->controls && a->ticket == b->ticket &&
-               a->resumed == b->resumed && a->evicted == b->evicted && a->scene_source == b->scene_source;
+               a->resumed == b->resumed && a->evicted == b->evicted && a->scene_source == b->scene_source &&
+               a->scene_origin == b->scene_origin;
     }
     return std::visit(
         [&](auto const& value) {

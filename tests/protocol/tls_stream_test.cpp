@@ -328,12 +328,15 @@ TEST_F(TlsStream, FilesThatCannotBeUsed) {
     Identity const other("other");
     std::string const certificate = identity_.certificate_file();
     std::string const key = identity_.key_file();
-    expect_input_error([&] { make_tls_server_context("/nowhere.pem", key); }, "TLS certificate '/nowhere.pem'");
+    expect_input_error([&] { make_tls_server_context("/nowhere.pem", key); },
+                       "TLS certificate '/nowhere.pem' cannot be used: there is no such file");
     expect_input_error([&] { make_tls_server_context(certificate, "/nowhere.pem"); }, "TLS key '/nowhere.pem'");
     expect_input_error([&] { make_tls_server_context(key, key); }, "private key, not a certificate");
     expect_input_error([&] { make_tls_server_context(certificate, certificate); }, "certificate, not a private key");
-    expect_input_error([&] { make_tls_server_context(certificate, other.key_file()); }, "key values mismatch");
-    expect_input_error([&] { make_tls_server_context(certificate, identity_.locked_key_file()); }, "TLS key");
+    expect_input_error([&] { make_tls_server_context(certificate, other.key_file()); },
+                       "the key of another certificate");
+    expect_input_error([&] { make_tls_server_context(certificate, identity_.locked_key_file()); },
+                       "it is locked with a password, for which a server cannot ask");
     expect_input_error([&] { make_tls_client_context("/nowhere.pem"); }, "TLS authority '/nowhere.pem'");
     expect_input_error([&] { make_tls_client_context(key); }, "private key, not a certificate");
     std::string const pipe = certificate + ".pipe"; // nobody writes into it, and nobody waits for that

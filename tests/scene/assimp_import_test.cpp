@@ -196,7 +196,9 @@ TEST(AssimpImport, SmallFilesCannotTakeMuchMemory) {
             import_scene(folder.write(name, text), {}, options);
             ADD_FAILURE() << "loaded: " << name;
         } catch (InputError const& error) {
-            EXPECT_NE(std::string(error.what()).find("--scene-memory"), std::string::npos) << error.what();
+            bool const is_bounded = std::string(error.what()).find("--scene-memory") != std::string::npos;
+            bool const is_unread = std::string(error.what()).find("a face that cannot be read") != std::string::npos;
+            EXPECT_TRUE(name == "b.ply" ? is_unread : is_bounded) << error.what();
         }
     }
     EXPECT_NO_THROW(std::make_unique<char[]>(256 << 20)) << "the bound is gone with the import";

@@ -1,11 +1,13 @@
 #include "server/scene/assimp/assimp_import.h"
 
+#include <assimp/DefaultLogger.hpp>
 #include <gtest/gtest.h>
 
 #include "common/color.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 #include "gltf_writer.h"
+#include "server/scene/assimp/assimp_log.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 
@@ -107,7 +109,8 @@ TEST(AssimpMend, UnusableNormalsCountAsMissing) {
         Scene const scene = import_scene(
             folder.write("a.stl", "solid s\n" + facet(of_flat, flat) + facet(of_steep, steep) + "endsolid s\n"));
         EXPECT_EQ(count_bent(scene), 0u) << of_flat << ", " << of_steep;
-        EXPECT_TRUE(scene.warnings.empty());
+        ASSERT_EQ(scene.warnings.size(), 1u);
+        EXPECT_NE(scene.warnings[0].find("neither what its unit is nor which axis is up"), std::string::npos);
     }
 }
 
@@ -191,6 +194,40 @@ TEST(AssimpMend, FbxFilesSayWhichAxisIsUpAndWhatAUnitIs) {
     check(fbx_tower(2, 1, -1, "100"), {0, 0, -1}, {1, 4, 0});
     check(fbx_tower(1, 2, 1, "1"), {0, 0, 0}, {0.01f, 0.01f, 0.04f});
     check(fbx_tower(1, 2, 1, "2.54"), {0, 0, 0}, {0.0254f, 0.0254f, 0.1016f});
+}
+
+TEST(AssimpMend, WhatAssimpPassesOverIsSaidPlainly) {
+    EXPECT_EQ(loss_in("Warn,  T0: Collada: too many texture coordinate sets. Skipping.\n"),
+              "some texture coordinates are passed over");
+    EXPECT_EQ(loss_in("Warn,  T0: 3DS: Skipping FOV animation track. This is not supported"),
+              "some of its animation is passed over");
+    EXPECT_EQ(loss_in("Error, T0: NFF: Encountered unsupported ID: NURBS"), "NURBS surfaces and curves are not shown");
+    EXPECT_EQ(loss_in("Warn,  T0: FBX-DOM: unknown enum value"), "");
+    AssimpLog const log;
+    for (char const* const line :
+         {"LWO2: Unsupported texture map mode: RESET", "LWO2: Skipping UV channel 'a'", "all is well"}) {
+        Assimp::DefaultLogger::get()->warn(line);
+        Assimp::DefaultLogger::get()->warn(line);
+    }
+    EXPECT_EQ(log.losses(), (std::vector<std::string>{"some of its textures are passed over",
+                                                      "some texture coordinates are passed over"}));
+}
+
+TEST(AssimpMend, APolygonWithBrokenCornersCostsThatPolygon) {
+    TemporaryFolder const folder;
+    Scene const scene =
+        import_scene(folder.write("a.off", "OFF\n5 2 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\nnan 0 0\n4 0 1 2 3\n3 0 1 4\n"));
+    EXPECT_EQ(count_triangles(scene.meshes.at(0)), 2u);
+    ASSERT_EQ(scene.warnings.size(), 1u);
+    EXPECT_EQ(scene.warnings[0], "1 polygon left out for corners that are not numbers");
+    for (auto const& [name, why] : {std::pair("a.dae", "Assimp cannot read it"), std::pair("a.blend", "a.blend")}) {
+        try {
+            import_scene(folder.write(name, "nothing of the kind"));
+            ADD_FAILURE() << "loaded";
+        } catch (InputError const& error) {
+            EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+        }
+    }
 }
 
 TEST(AssimpMend, PointsAndLinesAreSaidToBeLeftOut) {

@@ -37,14 +37,13 @@ struct Reader {
         return out;
     }
 
-    Vec3 vector(Json const& value, std::string const& field) const {
+    glm::dvec3 vector(Json const& value, std::string const& field) const {
         if (!value.is_array() || value.size() != 3) {
             fail("\"" + field + "\" must be an array of three numbers");
         }
-        Vec3 out;
+        glm::dvec3 out;
         for (int i = 0; i < 3; ++i) {
-            out[i] = static_cast<float>(
-                number(value[static_cast<std::size_t>(i)], field, -largest_coordinate, largest_coordinate));
+            out[i] = number(value[static_cast<std::size_t>(i)], field, -largest_coordinate, largest_coordinate);
         }
         return out;
     }
@@ -121,8 +120,16 @@ CameraMoment take_moment(Reader const& reader, Json& document) {
     return out;
 }
 
-Camera camera_of(CameraKey const& key) {
-    Camera out = look_at(key.position, key.target, key.up, key.vertical_fov);
+Vec3 position_of(CameraKey const& key, glm::dvec3 const& origin) {
+    return Vec3(key.position - origin);
+}
+
+Vec3 target_of(CameraKey const& key, glm::dvec3 const& origin) {
+    return Vec3(key.target - origin);
+}
+
+Camera camera_of(CameraKey const& key, glm::dvec3 const& origin) {
+    Camera out = look_at(position_of(key, origin), target_of(key, origin), key.up, key.vertical_fov);
     if (key.orthographic_height > 0) {
         out.projection = Projection::orthographic;
         out.vertical_extent = key.orthographic_height;
@@ -153,12 +160,12 @@ ClockRequest CameraMoment::clock_request() const {
     return out;
 }
 
-Camera CameraPath::at(double seconds) const {
+Camera CameraPath::at(double seconds, glm::dvec3 const& origin) const {
     FRAMELET_CHECK(!keys.empty());
     auto const after =
         std::upper_bound(keys.begin(), keys.end(), seconds, [](double t, CameraKey const& k) { return t < k.time; });
     if (after == keys.begin() || after == keys.end()) {
-        return camera_of(after == keys.begin() ? keys.front() : keys.back());
+        return camera_of(after == keys.begin() ? keys.front() : keys.back(), origin);
     }
     CameraKey const& a = *(after - 1);
     CameraKey const& b = *after;
@@ -166,27 +173,28 @@ Camera CameraPath::at(double seconds) const {
     CameraKey const& after_b = after + 1 == keys.end() ? b : *(after + 1);
     double const length = b.time - a.time;
     auto const t = static_cast<float>((seconds - a.time) / length);
-    auto const piece = [&](auto member) {
-        if (a.*member == b.*member) {
-            return a.*member; // equal to the last bit, so that a picture of what stands still can be completed
+    auto const piece = [&](auto const& value_of) {
+        auto const from = value_of(a), to = value_of(b), before = value_of(before_a), after_it = value_of(after_b);
+        if (from == to) {
+            return from; // equal to the last bit, so that a picture of what stands still can be completed
         }
-        bool const rests_before = &before_a != &a && before_a.*member == a.*member;
-        bool const rests_after = &after_b != &b && after_b.*member == b.*member;
+        bool const rests_before = &before_a != &a && before == from;
+        bool const rests_after = &after_b != &b && after_it == to;
         float const share_a = rests_before ? 0.0f : static_cast<float>(length / (b.time - before_a.time));
         float const share_b = rests_after ? 0.0f : static_cast<float>(length / (after_b.time - a.time));
-        return hermite(a.*member, b.*member, (b.*member - before_a.*member) * share_a,
-                       (after_b.*member - a.*member) * share_b, t);
+        return hermite(from, to, (to - before) * share_a, (after_it - from) * share_b, t);
     };
-    Vec3 const position = piece(&CameraKey::position);
-    Vec3 target = piece(&CameraKey::target);
-    if (!(glm::distance(position, target) > 1e-6f * glm::distance(a.position, a.target))) {
-        target = position + (a.target - a.position); // the two curves cross here: keep looking as before
+    Vec3 const position = piece([&](CameraKey const& key) { return position_of(key, origin); });
+    Vec3 target = piece([&](CameraKey const& key) { return target_of(key, origin); });
+    Vec3 const ahead(a.target - a.position);
+    if (!(glm::distance(position, target) > 1e-6f * glm::length(ahead))) {
+        target = position + ahead; // the two curves cross here: keep looking as before
     }
-    Vec3 up = piece(&CameraKey::up);
+    Vec3 up = piece([](CameraKey const& key) { return key.up; });
     if (!(glm::length(up) > 1e-3f)) {
         up = a.up;
     }
-    float const fov = std::clamp(piece(&CameraKey::vertical_fov), 0.0017f, 3.1f);
+    float const fov = std::clamp(piece([](CameraKey const& key) { return key.vertical_fov; }), 0.0017f, 3.1f);
     return look_at(position, target, up, fov);
 }
 

@@ -13,8 +13,8 @@ namespace framelet {
 
 struct CameraKey {
     double time = 0; ///< seconds since the path's start
-    Vec3 position{0, 0, 0}; ///< in the world, metres
-    Vec3 target{0, 0, -1}; ///< a point that is in the middle of the picture; likewise
+    glm::dvec3 position{0, 0, 0}; ///< as the scene's file counts, metres
+    glm::dvec3 target{0, 0, -1}; ///< a point that is in the middle of the picture; likewise
     Vec3 up{0, 1, 0}; ///< direction in the world
     float vertical_fov = 0.7854f; ///< radians
     float orthographic_height = 0; ///< metres; 0: it is a perspective camera
@@ -39,8 +39,9 @@ struct CameraPath {
     std::vector<CameraKey> keys;
     CameraMoment moment; ///< to begin with
 
-    /// The camera so many seconds after the path's start. There has to be a key.
-    Camera at(double seconds) const;
+    /// The camera so many seconds after the path's start, from the scene's origin (as in Welcome). There has to be a
+    /// key.
+    Camera at(double seconds, glm::dvec3 const& origin = glm::dvec3(0)) const;
     /// Seconds until the last key.
     double duration() const { return keys.empty() ? 0 : keys.back().time; }
 };

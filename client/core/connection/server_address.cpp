@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <charconv>
 
+#include <boost/asio/ip/address_v6.hpp>
+
 #include "common/error.h"
 
 namespace framelet {
@@ -17,6 +19,12 @@ ServerAddress parse_server_address(std::string const& text) {
 }
 
 namespace {
+
+bool is_ipv6(std::string const& text) {
+    boost::system::error_code error;
+    boost::asio::ip::make_address_v6(text, error);
+    return !error;
+}
 
 /// What of the text is HOST[:PORT]: without blanks around it, and of a URL neither scheme nor user nor path.
 std::string without_url(std::string text) {
@@ -59,12 +67,13 @@ ServerAddress parse_address(std::string const& from, std::uint16_t port_without)
         out.host = text.substr(1, end - 1);
         port = end + 1 == text.size() ? port : text.substr(end + 2);
     } else {
-        std::size_t const colon = text.find(':');
-        if (colon != text.rfind(':')) {
-            throw fail("an IPv6 address needs brackets around it");
+        std::size_t const colon = text.rfind(':');
+        bool const is_literal = colon != text.find(':');
+        if (is_literal && (text.size() - colon > 4 || !is_ipv6(text))) { // "::1:7070" may be either
+            throw fail("an IPv6 address with a port needs brackets around it, as in [::1]:7070");
         }
-        out.host = text.substr(0, colon);
-        port = colon == std::string::npos ? port : text.substr(colon + 1);
+        out.host = is_literal ? text : text.substr(0, colon);
+        port = is_literal || colon == std::string::npos ? port : text.substr(colon + 1);
     }
     auto const printable = [](char c) { return c > ' ' && c < 127; };
     if (out.host.empty() || out.host.size() > 253 || !std::all_of(out.host.begin(), out.host.end(), printable)) {

@@ -28,18 +28,18 @@ double shortest(float value) {
     return out;
 }
 
-Json vector_json(Vec3 const& v) {
-    return {shortest(v.x), shortest(v.y), shortest(v.z)};
+Json vector_json(Vec3 const& v, glm::dvec3 const& from = glm::dvec3(0)) {
+    return {from.x + shortest(v.x), from.y + shortest(v.y), from.z + shortest(v.z)};
 }
 
-Json pose_json(Camera const& camera) {
-    return {{"position", vector_json(camera.position)},
-            {"target", vector_json(camera.position + camera.forward())},
+Json pose_json(Camera const& camera, glm::dvec3 const& origin) {
+    return {{"position", vector_json(camera.position, origin)},
+            {"target", vector_json(camera.position + camera.forward(), origin)},
             {"up", vector_json(camera.up())}};
 }
 
-Json camera_json(Camera const& camera) {
-    Json out = pose_json(camera);
+Json camera_json(Camera const& camera, glm::dvec3 const& origin) {
+    Json out = pose_json(camera, origin);
     if (camera.projection == Projection::orthographic) {
         out["orthographic_height"] = shortest(camera.vertical_extent);
     } else {
@@ -49,7 +49,7 @@ Json camera_json(Camera const& camera) {
 }
 
 /// Reads a bookmark: what camera files do not have is taken out before the rest is read as one.
-Bookmark read_bookmark(Json entry, std::string const& file) {
+Bookmark read_bookmark(Json entry, std::string const& file, glm::dvec3 const& origin) {
     Bookmark out;
     if (entry.is_object() && entry.contains("name") && entry["name"].is_string()) {
         out.name = entry["name"].get<std::string>().substr(0, longest_name);
@@ -59,23 +59,23 @@ Bookmark read_bookmark(Json entry, std::string const& file) {
     if (path.keys.size() != 1) {
         throw InputError("camera file " + file + ": a bookmark must be a still camera");
     }
-    out.camera = path.at(0);
+    out.camera = path.at(0, origin);
     return out;
 }
 
 /// The text of a file of bookmarks: {"cameras": [{"name": ..., and as in a camera file}, ...]}.
-std::string bookmarks_text(std::vector<Bookmark> const& bookmarks) {
+std::string bookmarks_text(std::vector<Bookmark> const& bookmarks, glm::dvec3 const& origin) {
     Json cameras = Json::array();
     for (Bookmark const& bookmark : bookmarks) {
         Json entry{{"name", bookmark.name}};
-        entry.update(camera_json(bookmark.camera));
+        entry.update(camera_json(bookmark.camera, origin));
         cameras.push_back(std::move(entry));
     }
     return Json{{"cameras", std::move(cameras)}}.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 /// Reads such a text. Throws InputError; `name` of the file is for its message.
-std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name) {
+std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const& name, glm::dvec3 const& origin) {
     Json const document = Json::parse(text, nullptr, false);
     if (!document.is_object() || !document.contains("cameras") || !document["cameras"].is_array() ||
         document["cameras"].size() > Bookmarks::most) {
@@ -83,15 +83,15 @@ std::vector<Bookmark> parse_bookmarks(std::string const& text, std::string const
     }
     std::vector<Bookmark> out;
     for (Json const& entry : document["cameras"]) {
-        out.push_back(read_bookmark(entry, name));
+        out.push_back(read_bookmark(entry, name, origin));
     }
     return out;
 }
 
 } // namespace
 
-std::string camera_file_text(Camera const& camera, CameraMoment const& moment) {
-    Json out = camera_json(camera);
+std::string camera_file_text(Camera const& camera, CameraMoment const& moment, glm::dvec3 const& origin) {
+    Json out = camera_json(camera, origin);
     if (moment.scene_time) {
         out["scene_time"] = *moment.scene_time;
     }
@@ -104,11 +104,12 @@ std::string camera_file_text(Camera const& camera, CameraMoment const& moment) {
     return out.dump() + "\n";
 }
 
-Bookmarks::Bookmarks(std::filesystem::path file, std::filesystem::path const& older) : file_(std::move(file)) {
+Bookmarks::Bookmarks(std::filesystem::path file, std::filesystem::path const& older, glm::dvec3 const& origin)
+    : file_(std::move(file)), origin_(origin) {
     for (std::filesystem::path const& from : {file_, older}) {
         try {
             if (auto const text = read_user_file(from)) {
-                all_ = parse_bookmarks(*text, from.string());
+                all_ = parse_bookmarks(*text, from.string(), origin);
                 return;
             }
         } catch (InputError const& error) {
@@ -154,7 +155,7 @@ void Bookmarks::save() {
         std::error_code ignored; // what cannot be kept is written over
         std::filesystem::rename(file_, kept, ignored);
     }
-    write_user_file(file_, bookmarks_text(all_));
+    write_user_file(file_, bookmarks_text(all_, origin_));
 }
 
 BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_source) {

@@ -17,8 +17,10 @@ struct Bookmark {
     bool operator==(Bookmark const&) const = default;
 };
 
-/// The camera, and the moment that it is of, as --camera reads them, with a line's end.
-std::string camera_file_text(Camera const& camera, CameraMoment const& moment);
+/// The camera, and the moment that it is of, as --camera reads them, with a line's end; `origin` of the scene as in
+/// Welcome.
+std::string camera_file_text(Camera const& camera, CameraMoment const& moment,
+                             glm::dvec3 const& origin = glm::dvec3(0));
 
 /// Files of a scene's bookmarks; empty: there is none.
 struct BookmarkFiles {
@@ -35,9 +37,12 @@ public:
     static constexpr std::size_t most = 1000;
 
     /// Reads the file or, where there is none, the older one, which is never written. Where that cannot be used there
-    /// are none, and `complaint` is one line.
-    explicit Bookmarks(std::filesystem::path file, std::filesystem::path const& older = {});
-    explicit Bookmarks(BookmarkFiles const& files) : Bookmarks(files.own, files.older) {}
+    /// are none, and `complaint` is one line. Files hold positions as the scene's file has them, `all` has them from
+    /// its `origin`.
+    explicit Bookmarks(std::filesystem::path file, std::filesystem::path const& older = {},
+                       glm::dvec3 const& origin = glm::dvec3(0));
+    explicit Bookmarks(BookmarkFiles const& files, glm::dvec3 const& origin = glm::dvec3(0))
+        : Bookmarks(files.own, files.older, origin) {}
 
     std::vector<Bookmark> const& all() const { return all_; }
     std::string const& complaint() const { return complaint_; }
@@ -53,6 +58,7 @@ private:
     void save();
 
     std::filesystem::path file_;
+    glm::dvec3 origin_;
     std::vector<Bookmark> all_;
     std::string complaint_;
     bool is_broken_ = false; ///< the file could not be used

@@ -97,6 +97,10 @@ void face_viewer(LaneVec3 const& ray, LaneMask behind, LaneVec3& normal) {
     }
 }
 
+float largest_of(Vec3 const& v) {
+    return std::max({std::abs(v.x), std::abs(v.y), std::abs(v.z)});
+}
+
 float cut_or_blend_alpha(RenderMaterial const& material, float alpha) {
     return material.alpha_mode == AlphaMode::blend ? std::clamp(alpha, 0.0f, 1.0f) : 1.0f;
 }
@@ -201,9 +205,9 @@ Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u,
     return Vec3(1 - presence) + tint * (presence * transmission * 0.96f); // 4% are reflected
 }
 
-Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal) {
-    constexpr float near_origin = 1.0f / 32.0f;
-    constexpr float float_scale = 1.0f / 65536.0f;
+Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal, float largest) {
+    float const near_origin = std::min(largest, 1.0f / 32.0f);
+    float const float_scale = near_origin / 2048.0f;
     constexpr float int_scale = 256.0f;
     Vec3 out;
     for (int c = 0; c < 3; ++c) {
@@ -244,7 +248,10 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
         set_material(geometry, frame.point[i], lane, uv_point, out);
         Vec3 const position = frame.position.get(lane);
         Vec3 const smooth = position + smooth_offset(frame, lane);
-        out.leaving.set(lane, offset_from_surface(traceable(smooth) ? smooth : position, frame.facet.get(lane)));
+        float const largest = std::max({largest_of(position), largest_of(frame.edge1.get(lane)),
+                                        largest_of(frame.edge2.get(lane)), largest_of(frame.instance[i]->translation)});
+        out.leaving.set(lane,
+                        offset_from_surface(traceable(smooth) ? smooth : position, frame.facet.get(lane), largest));
     });
     face_viewer(frame.ray, frame.behind, out.normal);
     return present;

@@ -28,7 +28,8 @@ LaneMask make_surfaces(std::span<Instance const> instances, RayPacket const& ray
                        Footprint const& footprint, SurfacePacket& out);
 
 /// A start for rays that leave `position` to the side of `normal`, far enough off to miss the surface itself and no
-/// farther than single precision asks for ([Wächter 2019]).
-Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal);
+/// farther than single precision asks for ([Wächter 2019]). `largest`: of the numbers that `position` was computed of,
+/// metres.
+Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal, float largest);
 
 } // namespace framelet

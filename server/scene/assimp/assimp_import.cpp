@@ -1,5 +1,6 @@
 #include "server/scene/assimp/assimp_import.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <optional>
 #include <sstream>
@@ -8,7 +9,6 @@
 #include <assimp/DefaultIOStream.h>
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
-#include <assimp/MemoryIOWrapper.h>
 #include <assimp/ProgressHandler.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -16,13 +16,13 @@
 #include "common/color.h"
 #include "common/counted.h"
 #include "common/error.h"
+#include "server/scene/assimp/assimp_log.h"
 #include "server/scene/assimp/assimp_mend.h"
 #include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/assimp/memory_limit.h"
 #include "server/scene/assimp/mesh_header.h"
-#include "server/scene/assimp/mtl_text.h"
 #include "server/scene/assimp/polygon.h"
-#include "server/scene/reading/file_ending.h"
+#include "server/scene/finish/finish_parts.h"
 #include "server/scene/reading/held_exception.h"
 
 namespace framelet {
@@ -45,13 +45,12 @@ private:
     RegularFile file_; ///< whose name is asked for its size
 };
 
-/// Opens the scene file and what the folder permits; material files of an .obj as their readable lines. Notes which
-/// files could not be opened: Assimp only mentions them in its log.
+/// Opens the scene file and what the folder permits. Notes which files could not be opened: Assimp only mentions them
+/// in its log.
 class PermittedFiles : public Assimp::DefaultIOSystem {
 public:
-    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing,
-                   MtlRemarks& mtl)
-        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing), mtl_(mtl) {}
+    PermittedFiles(std::string scene_file, SceneFolder const& folder, std::vector<std::string>& missing)
+        : scene_file_(std::move(scene_file)), folder_(folder), missing_(missing) {}
 
     bool Exists(char const* file) const override { return open(file).has_value(); }
 
@@ -59,11 +58,8 @@ public:
         std::optional<RegularFile> opened = open(file);
         if (!opened) {
             missing_.emplace_back(file);
-            return nullptr;
         }
-        auto* const stream = new OpenedStream(std::move(*opened));
-        bool const is_mtl = file != scene_file_ && lower_extension(scene_file_) == ".obj";
-        return is_mtl ? cleaned(stream, file) : stream;
+        return opened ? new OpenedStream(std::move(*opened)) : nullptr;
     }
 
 private:
@@ -75,20 +71,9 @@ private:
         return folder_.permits(file) ? folder_.open(file) : std::nullopt;
     }
 
-    Assimp::IOStream* cleaned(Assimp::IOStream* stream, std::filesystem::path const& file) {
-        std::string text(stream->FileSize(), '\0');
-        text.resize(stream->Read(text.data(), 1, text.size()));
-        Close(stream);
-        std::string const clean = clean_mtl(text, file.filename().string(), mtl_);
-        auto* const bytes = new std::uint8_t[clean.size()]; // the stream owns and deletes them
-        std::copy(clean.begin(), clean.end(), bytes);
-        return new Assimp::MemoryIOStream(bytes, clean.size(), true);
-    }
-
     std::string scene_file_;
     SceneFolder const& folder_;
     std::vector<std::string>& missing_;
-    MtlRemarks& mtl_;
 };
 
 /// Hands on how far Assimp is. Where that throws, Assimp is told to stop; not all of its readers look at that.
@@ -118,10 +103,28 @@ Vec3 to_vec3(aiVector3D const& v) {
 struct LeftOut {
     std::size_t points = 0;
     std::size_t lines = 0;
+    std::size_t broken = 0; ///< with corners that are no numbers
 };
 
-/// Replaces polygons by triangles; drops points and lines, and counts them. Assimp's own step leaves holes in polygons
-/// that cross themselves (24 triangles of 116,501 in one model tried).
+/// Drops polygons with corners that are no numbers, and counts them: smoothing would spread these.
+void drop_broken_faces(aiMesh& mesh, LeftOut& left_out) {
+    unsigned kept = 0;
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+        aiFace& face = mesh.mFaces[f];
+        bool const is_whole = std::all_of(face.mIndices, face.mIndices + face.mNumIndices,
+                                          [&](unsigned i) { return in_range(to_vec3(mesh.mVertices[i])); });
+        if (is_whole) {
+            std::swap(mesh.mFaces[kept].mNumIndices, face.mNumIndices);
+            std::swap(mesh.mFaces[kept].mIndices, face.mIndices);
+            ++kept;
+        }
+    }
+    left_out.broken += mesh.mNumFaces - kept;
+    mesh.mNumFaces = kept;
+}
+
+/// Replaces polygons by triangles; drops points and lines, and counts them. Assimp's own step
+/// leaves holes in polygons that cross themselves (24 triangles of 116,501 in one model tried).
 void triangulate_faces(aiMesh& mesh, LeftOut& left_out) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::vector<Vec3> corners;
@@ -198,9 +201,9 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
                     Progress const& progress, bool is_checked) {
     Scene scene;
     std::vector<std::string> missing;
-    MtlRemarks mtl;
     LeftOut left_out;
     progress("reading", 0);
+    AssimpLog const log;
     Assimp::Importer importer;
     std::string const extension = file.extension().string();
     if (extension.empty() || !importer.IsExtensionSupported(extension)) {
@@ -209,7 +212,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
     check_mesh_header(file);
     ImportBudget(budget).reserve(std::filesystem::file_size(file), memory_per_file_byte);
     HeldException held;
-    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing, mtl)); // owned by the importer
+    importer.SetIOHandler(new PermittedFiles(file.string(), folder, missing)); // owned by the importer
     importer.SetProgressHandler(new ReadingProgress(progress, held)); // as well
     importer.SetPropertyFloat(AI_CONFIG_PP_GSN_MAX_SMOOTHING_ANGLE, crease_degrees);
     importer.SetPropertyBool(AI_CONFIG_IMPORT_FBX_PRESERVE_PIVOTS, false);
@@ -223,6 +226,7 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
         std::vector<std::vector<aiVector3D>> normals; // those of each mesh that are kept beside new ones
         if (from && held.call([&] { progress("triangulating", 0); })) {
             for (unsigned m = 0; m < from->mNumMeshes; ++m) {
+                drop_broken_faces(*from->mMeshes[m], left_out);
                 normals.push_back(take_normals(*from->mMeshes[m]));
                 triangulate_faces(*from->mMeshes[m], left_out);
                 held.call([&] { progress("triangulating", (m + 1.0) / from->mNumMeshes); });
@@ -250,30 +254,32 @@ Scene import_assimp(std::filesystem::path const& file, SceneFolder const& folder
         if (why.find("bad_alloc") != std::string::npos || why.find("bad_array_new_length") != std::string::npos) {
             throw budget.too_large();
         }
-        if (why.find("contains no faces") != std::string::npos) { // a cloud of points
+        if (why.find("contains no faces") != std::string::npos || why.find("mNumMeshes is 0") != std::string::npos) {
             throw InputError("it has no surfaces, and only these are shown");
         }
-        throw InputError(why.empty() ? "it has no content" : why);
-    }
-    // Where an .obj names a material file that is missing, Assimp tries one with the scene's own name after it.
-    std::string const fallback = std::filesystem::path(file).replace_extension(".mtl").string();
-    for (std::string const& name : missing) {
-        if (name == fallback && missing.front() != fallback) {
-            continue;
+        if (why.find("No suitable reader") != std::string::npos) {
+            throw InputError("what is in it is not " + extension);
         }
+        throw InputError(why.empty() ? "it has no content" : "Assimp cannot read it: " + why);
+    }
+    for (std::string const& name : missing) {
         std::string const problem =
             folder.permits(name) ? "file '" + name + "' is missing" : SceneFolder::refusal("file", name);
         scene.warnings.push_back(problem + "; shown without it");
     }
-    scene.warnings.insert(scene.warnings.end(), mtl.warnings.begin(), mtl.warnings.end());
     for (auto const& [count, what] : {std::pair(left_out.points, "point"), std::pair(left_out.lines, "line")}) {
         if (count > 0) {
             scene.warnings.push_back(counted(count, what) + (count == 1 ? " is" : " are") +
                                      " not shown: only surfaces are");
         }
     }
+    if (left_out.broken > 0) {
+        scene.warnings.push_back(counted(left_out.broken, "polygon") + " left out for corners that are not numbers");
+    }
+    for (std::string& loss : log.losses()) {
+        scene.warnings.push_back(std::move(loss));
+    }
     place_by_settings(*from);
-    add_transforms(*from, mtl);
     import_assimp_materials(*from, folder, budget, scene, progress);
     import_assimp_nodes(*from, budget, scene);
     return scene;

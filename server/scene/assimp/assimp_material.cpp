@@ -8,34 +8,19 @@
 #include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/assimp/picture_ops.h"
 #include "server/scene/reading/image_loading.h"
+#include "server/scene/reading/named_file.h"
 
 namespace framelet {
 namespace {
-
-std::string with_slashes(std::string name) {
-    std::replace(name.begin(), name.end(), '\\', '/');
-    return name;
-}
 
 /// Collects the images that materials name: each once, whatever the number of uses.
 struct Images {
     aiScene const& from;
     SceneFolder const& folder;
     ImportBudget& budget;
+    std::vector<std::string>& warnings;
     std::vector<EncodedImage> encoded;
     std::map<std::string, Index> index_of;
-
-    /// The file that a material names, which may be written for another system or another folder.
-    std::filesystem::path find_file(std::string const& name) const {
-        std::filesystem::path const path(with_slashes(name));
-        std::error_code code;
-        for (std::filesystem::path const& candidate : {folder.path() / path, folder.path() / path.filename()}) {
-            if (folder.permits(candidate) && std::filesystem::is_regular_file(candidate, code)) {
-                return candidate;
-            }
-        }
-        return {};
-    }
 
     /// Makes a picture of an embedded texture that is stored as texels.
     Picture make_picture(aiTexture const& texture) const {
@@ -61,10 +46,11 @@ struct Images {
             } else if (embedded) {
                 image.decoded = std::make_shared<Picture const>(make_picture(*embedded));
             } else {
-                image.file = find_file(name);
-                std::string const portable = with_slashes(name);
-                if (image.file.empty() && !folder.permits(folder.path() / portable)) {
-                    image.problem = SceneFolder::refusal("image", portable);
+                NamedFile const file = find_named_file(folder, "image", name);
+                image.file = file.file;
+                image.problem = file.file.empty() ? no_named_file(folder, "image", name) : "";
+                if (!file.remark.empty()) {
+                    warnings.push_back(file.remark);
                 }
             }
             encoded.push_back(std::move(image));
@@ -220,7 +206,7 @@ void apply_opacity(Scene& scene, Material& material, TextureUse const& opacity, 
 
 void import_assimp_materials(aiScene const& from, SceneFolder const& folder, ImportBudget& budget, Scene& scene,
                              Progress const& progress) {
-    Images images{from, folder, budget, {}, {}};
+    Images images{from, folder, budget, scene.warnings, {}, {}};
     std::vector<TextureUse> opacity;
     std::vector<bool> is_on_colors(from.mNumMaterials);
     for (unsigned m = 0; m < from.mNumMeshes; ++m) {

@@ -1,6 +1,5 @@
 #include "server/scene/assimp/mesh_header.h"
 
-#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <sstream>
@@ -55,31 +54,13 @@ void check_off(std::istream& in, std::uintmax_t file_bytes) {
     }
 }
 
-/// Checks a .ply file: lines "element NAME COUNT" up to "end_header", for which Assimp would look without end.
-void check_ply(std::istream& in, std::uintmax_t file_bytes) {
-    bool names_end = false;
-    auto words = next_words(in);
-    for (; !words.empty() && words[0] != "end_header"; words = next_words(in)) {
-        if (words[0] == "element" && words.size() > 2) {
-            check_count(words[2], file_bytes);
-        }
-        names_end = names_end || std::ranges::find(words, "end_header") != words.end(); // lines may end otherwise
-    }
-    if (words.empty() && in.eof() && !names_end) {
-        throw InputError("its header has no end");
-    }
-}
-
 } // namespace
 
 void check_mesh_header(std::filesystem::path const& file) {
-    std::string const extension = lower_extension(file);
-    RegularFile const opened(file);
-    std::ifstream in(opened.name(), std::ios::binary);
-    if (extension == ".off") {
+    if (lower_extension(file) == ".off") {
+        RegularFile const opened(file);
+        std::ifstream in(opened.name(), std::ios::binary);
         check_off(in, opened.bytes());
-    } else if (extension == ".ply") {
-        check_ply(in, opened.bytes());
     }
 }
 

@@ -6,8 +6,8 @@
 
 namespace framelet {
 
-/// Throws InputError where a .off or .ply file cannot hold the vertices and faces that its header promises. Other
-/// formats have no such counts, or Assimp checks them.
+/// Throws InputError where a .off file cannot hold the vertices and faces that its header promises. Other formats have
+/// no such counts, or Assimp checks them.
 void check_mesh_header(std::filesystem::path const& file);
 
 } // namespace framelet

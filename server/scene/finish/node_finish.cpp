@@ -45,8 +45,8 @@ void finish_transforms(Scene& scene) {
                   in_range(local.scale);
         if (node.matrix) {
             for (int column = 0; column < 4; ++column) {
-                Vec4& v = (*node.matrix)[column];
-                v.w = column == 3 ? 1.0f : 0.0f;
+                glm::dvec4& v = (*node.matrix)[column];
+                v.w = column == 3 ? 1 : 0;
                 ok = ok && in_range(Vec3(v));
             }
         }

@@ -9,6 +9,7 @@
 #include "server/scene/finish/finish_parts.h"
 #include "server/scene/finish/primitive_finish.h"
 #include "server/scene/finish/primitive_ops.h"
+#include "server/scene/finish/scene_origin.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/reading/image_loading.h"
 #include "server/scene/vector_math.h"
@@ -163,7 +164,7 @@ void check_placement(Scene const& scene) {
     std::vector<glm::dmat4> world(scene.nodes.size());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         Node const& node = scene.nodes[i];
-        glm::dmat4 const local(node.matrix ? *node.matrix : matrix_of(node.local));
+        glm::dmat4 const local = node.matrix ? *node.matrix : matrix_of(node.local);
         world[i] = node.parent == none ? local : world[static_cast<std::size_t>(node.parent)] * local;
         for (int c = 0; c < 4; ++c) {
             if (!(glm::length(glm::dvec3(world[i][c])) <= max_coordinate)) {
@@ -180,8 +181,10 @@ void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress) 
     finish_materials(scene);
     finish_meshes(scene, budget, progress);
     finish_nodes(scene);
-    reserve_copies(scene, budget);
     finish_clips(scene);
+    set_origin(scene);
+    centre_meshes(scene);
+    reserve_copies(scene, budget);
     finish_lights(scene);
     finish_cameras(scene);
     check_placement(scene);

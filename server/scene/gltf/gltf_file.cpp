@@ -16,6 +16,7 @@
 #include "server/scene/gltf/gltf_accessor.h"
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/held_exception.h"
+#include "server/scene/reading/named_file.h"
 
 namespace framelet {
 namespace {
@@ -108,6 +109,7 @@ std::string decode_uri(std::string const& uri) {
 struct FileAccess {
     SceneFolder const& folder;
     ImportBudget& budget;
+    std::vector<std::string>& warnings;
     Progress const& progress;
     std::uint64_t bytes; ///< to be read: of the scene file, then of its buffers
     std::uint64_t bytes_read = 0;
@@ -115,8 +117,25 @@ struct FileAccess {
     double last_fraction; ///< at the last
     HeldException held = {}; ///< from what tinygltf has called
     std::map<std::string, std::size_t> buffer_sizes = {}; ///< of buffer files, by path
+    std::map<std::string, std::filesystem::path> found = {}; ///< the files that paths stand for; empty: none
 
     std::string path_of(std::string const& uri) const { return folder.path().string() + "/" + decode_uri(uri); }
+
+    bool is_buffer(std::string const& path) const { return buffer_sizes.contains(path); }
+
+    /// The file for a path that tinygltf has made of the folder and a name.
+    std::filesystem::path const& find(std::string const& path) {
+        auto const [at, is_new] = found.try_emplace(path);
+        if (is_new) {
+            std::string const name = path.substr(folder.path().string().size() + 1);
+            NamedFile file = find_named_file(folder, is_buffer(path) ? "buffer" : "image", name);
+            at->second = std::move(file.file);
+            if (!file.remark.empty()) {
+                warnings.push_back(std::move(file.remark));
+            }
+        }
+        return at->second;
+    }
 
     /// From now on it is buffers that are read, up to this fraction of reading as a whole.
     void expect_buffers(double fraction) {
@@ -220,18 +239,16 @@ void inspect_json(std::string_view json, FileAccess& access) {
 
 bool file_exists(std::string const& path, void* user) {
     // tinygltf also looks into the working directory, which has nothing to do with the scene.
-    auto const& access = *static_cast<FileAccess const*>(user);
+    auto& access = *static_cast<FileAccess*>(user);
     std::string const folder = access.folder.path().string() + "/";
     if (!path.starts_with(folder)) {
         return false;
     }
-    if (!access.folder.permits(path)) {
-        if (access.buffer_sizes.contains(path)) {
-            throw InputError(SceneFolder::refusal("buffer", path.substr(folder.size())));
-        }
-        return false; // an image: `gltf_images` says so
+    bool const is_found = !access.find(path).empty();
+    if (!is_found && access.is_buffer(path) && !access.folder.permits(path)) {
+        throw InputError(SceneFolder::refusal("buffer", path.substr(folder.size())));
     }
-    return access.folder.open(path).has_value();
+    return is_found; // of an image that is not `gltf_images` says so
 }
 
 std::string same_path(std::string const& path, void*) {
@@ -240,14 +257,15 @@ std::string same_path(std::string const& path, void*) {
 
 bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::string const& path, void* user) {
     auto& access = *static_cast<FileAccess*>(user);
-    std::optional<RegularFile> const file = access.folder.open(path);
+    std::filesystem::path const& found = access.find(path);
+    std::optional<RegularFile> const file = access.folder.open(found);
     if (!file) {
         *error += "file '" + path + "' cannot be read";
         return false;
     }
     access.budget.reserve(file->bytes(), 1); // one file may be named a thousand times
     try {
-        *out = read_bytes(*file, path, [&](std::size_t count) {
+        *out = read_bytes(*file, found.string(), [&](std::size_t count) {
             if (!access.held.call([&] { access.report_read(count); })) {
                 throw InputError("it is not wanted any more"); // what is held says why
             }
@@ -291,7 +309,7 @@ std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, Sc
     if (!opened) {
         throw InputError("it cannot be read: " + opened.problem());
     }
-    FileAccess access{folder, budget, progress, opened.bytes(), 0, 0, file_read};
+    FileAccess access{folder, budget, warnings, progress, opened.bytes(), 0, 0, file_read};
     budget.reserve(access.bytes, 1);
     std::vector<unsigned char> const bytes =
         read_bytes(opened, file.string(), [&access](std::size_t count) { access.report_read(count); });
@@ -341,8 +359,8 @@ std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessor
             name += image.mimeType == "image/jpeg" ? ".jpg" : image.mimeType == "image/webp" ? ".webp" : ".png";
         }
         std::string problem;
-        if (!in_file && bytes.empty() && !folder.permits(folder.path() / name)) {
-            problem = SceneFolder::refusal("image", name);
+        if (!in_file && bytes.empty()) {
+            problem = no_named_file(folder, "image", name);
         } else if (image.uri.starts_with("data:") && bytes.empty()) {
             problem = "image '" + name + "' holds data of a kind that is not supported: " +
                       image.uri.substr(0, std::min(image.uri.find_first_of(";,"), longest_media_type));

@@ -45,10 +45,12 @@ Node make_node(tinygltf::Node const& from, Index parent) {
     node.name = from.name;
     node.parent = parent;
     if (from.matrix.size() == 16) {
-        node.matrix = Mat4(glm::make_mat4(from.matrix.data()));
+        node.matrix = glm::make_mat4(from.matrix.data());
     }
     Vec4 const rotation = vec4(from.rotation, {0, 0, 0, 1});
-    node.local.translation = vec3(from.translation, node.local.translation);
+    if (from.translation.size() == 3) {
+        node.local.translation = glm::make_vec3(from.translation.data());
+    }
     node.local.rotation = Quat(rotation.w, rotation.x, rotation.y, rotation.z);
     node.local.scale = vec3(from.scale, node.local.scale);
     for (double const weight : from.weights) {

@@ -23,12 +23,12 @@ float clip_time(AnimationClip const& clip, SceneTime time) {
 }
 
 /// The transform itself; where keys take a node so far that a float cannot tell, one that shrinks it to nothing.
-Mat4 usable(Mat4 const& world) {
-    constexpr float farthest = 1e15f;
+glm::dmat4 usable(glm::dmat4 const& world) {
+    constexpr double farthest = 1e15;
     for (int column = 0; column < 4; ++column) {
-        Vec4 const& v = world[column];
+        glm::dvec4 const& v = world[column];
         if (!(std::abs(v.x) + std::abs(v.y) + std::abs(v.z) <= farthest)) {
-            Mat4 nothing(0);
+            glm::dmat4 nothing(0);
             nothing[3].w = 1;
             return nothing;
         }
@@ -65,7 +65,8 @@ bool changes_nothing(Node const& node, AnimationChannel const& channel) {
             ? std::array{local.rotation.x, local.rotation.y, local.rotation.z, local.rotation.w}
         : channel.property == AnimatedProperty::scale
             ? std::array{local.scale.x, local.scale.y, local.scale.z, 0.0f}
-            : std::array{local.translation.x, local.translation.y, local.translation.z, 0.0f};
+            : std::array{static_cast<float>(local.translation.x), static_cast<float>(local.translation.y),
+                         static_cast<float>(local.translation.z), 0.0f};
     if (channel.interpolation == Interpolation::cubic_spline) {
         return false;
     }
@@ -79,18 +80,18 @@ bool changes_nothing(Node const& node, AnimationChannel const& channel) {
 
 } // namespace
 
-Mat4 matrix_of(Transform const& transform) {
-    Mat4 matrix = glm::mat4_cast(transform.rotation);
+glm::dmat4 matrix_of(Transform const& transform) {
+    glm::dmat4 matrix = glm::mat4_cast(glm::dquat(transform.rotation));
     matrix[0] *= transform.scale.x;
     matrix[1] *= transform.scale.y;
     matrix[2] *= transform.scale.z;
-    matrix[3] = Vec4(transform.translation, 1);
+    matrix[3] = glm::dvec4(transform.translation, 1);
     return matrix;
 }
 
-Transform transform_of(Mat4 const& matrix) {
+Transform transform_of(glm::dmat4 const& matrix) {
     Transform result;
-    result.translation = Vec3(matrix[3]);
+    result.translation = glm::dvec3(matrix[3]);
     Mat3 axes(matrix);
     for (int c = 0; c < 3; ++c) {
         result.scale[c] = glm::length(axes[c]);
@@ -164,11 +165,14 @@ ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneT
         }
     }
     pose.world_from_node.resize(count);
+    std::vector<glm::dmat4> placed(count); // as the files have it
     for (std::size_t i = 0; i < count; ++i) {
         Node const& node = scene.nodes[i];
-        Mat4 const local = node.matrix ? *node.matrix : matrix_of(locals[i]);
-        pose.world_from_node[i] =
-            usable(node.parent == none ? local : pose.world_from_node[static_cast<std::size_t>(node.parent)] * local);
+        glm::dmat4 const local = node.matrix ? *node.matrix : matrix_of(locals[i]);
+        placed[i] = usable(node.parent == none ? local : placed[static_cast<std::size_t>(node.parent)] * local);
+        glm::dmat4 world = placed[i];
+        world[3] -= glm::dvec4(scene.origin, 0);
+        pose.world_from_node[i] = Mat4(world);
     }
     return pose;
 }

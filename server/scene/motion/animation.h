@@ -9,7 +9,8 @@
 
 namespace framelet {
 
-/// World transform of every node and the morph weights of every node that has a morphing mesh (else empty).
+/// World transform of every node, from the scene's origin, and the morph weights of every node that has a morphing mesh
+/// (else empty).
 struct ScenePose {
     SceneTime time = 0;
     std::vector<Mat4> world_from_node;
@@ -17,10 +18,10 @@ struct ScenePose {
 };
 
 /// The matrix T * R * S.
-Mat4 matrix_of(Transform const& transform);
+glm::dmat4 matrix_of(Transform const& transform);
 
 /// Takes a matrix apart into translation, rotation and scale; shear is lost.
-Transform transform_of(Mat4 const& matrix);
+Transform transform_of(glm::dmat4 const& matrix);
 
 /// The clips that play together: the first one, and every later one that moves nothing an earlier one moves.
 std::vector<Index> default_clips(Scene const& scene);

@@ -27,6 +27,7 @@ public:
         add(std::vector<float>{static_cast<float>(numbers)...});
     }
     void add(Vec3 const& v) { add_numbers(v.x, v.y, v.z); }
+    void add(glm::dvec3 const& v) { add(std::vector<double>{v.x, v.y, v.z}); }
 
     std::uint64_t value() const { return value_; }
 
@@ -56,7 +57,7 @@ void add(Digest& digest, Node const& node) {
     digest.add_numbers(rotation.x, rotation.y, rotation.z, rotation.w, node.parent, node.mesh);
     digest.add(node.local.scale);
     if (node.matrix) {
-        digest.add(std::vector<Mat4>{*node.matrix});
+        digest.add(std::vector<glm::dmat4>{*node.matrix});
     }
 }
 
@@ -65,6 +66,7 @@ void add(Digest& digest, Node const& node) {
 std::uint64_t scene_identity(Scene const& scene) {
     Digest digest;
     digest.add(scene.name);
+    digest.add(scene.origin);
     for (auto const& image : scene.images) {
         if (image) {
             digest.add(image->rgba);

@@ -29,7 +29,7 @@ std::size_t image_bytes(Scene const& scene) {
     return bytes;
 }
 
-Json three(Vec3 const& v) {
+Json three(glm::dvec3 const& v) {
     return {v.x, v.y, v.z};
 }
 
@@ -50,7 +50,10 @@ Json summarize(Scene const& scene, std::span<Index const> clips) {
                 {"textures", scene.textures.size()},
                 {"images", scene.images.size()},
                 {"image_bytes", image_bytes(scene)},
-                {"bounds", {{"low", three(bounds.lower)}, {"high", three(bounds.upper)}}},
+                {"bounds",
+                 {{"low", three(scene.origin + glm::dvec3(bounds.lower))},
+                  {"high", three(scene.origin + glm::dvec3(bounds.upper))}}},
+                {"origin", three(scene.origin)},
                 {"anything_to_see", has_anything_to_see(scene)},
                 {"duration_seconds", animation_duration(scene, clips)}};
     Json& lights = out["lights"] = Json::array();
@@ -159,6 +162,11 @@ std::string scene_summary_text(Scene const& scene, std::span<Index const> clips)
                            ", " + count_of(s["nodes"], "node")});
     lines.add("size", {s["anything_to_see"].get<bool>() ? size + " m"
                                                         : "there is nothing to see: a server refuses this scene"});
+    if (scene.origin != glm::dvec3(0)) {
+        glm::dvec3 const& at = scene.origin;
+        lines.add("far away", {"about " + fixed(at.x, 0) + ", " + fixed(at.y, 0) + ", " + fixed(at.z, 0) +
+                               " m: kept apart, so that nothing is less exact"});
+    }
     lines.add("materials", {count_of(s["materials"], "material") + ", " + count_of(s["textures"], "texture") + " of " +
                             count_of(s["images"], "image") + " (" + fixed(s["image_bytes"].get<double>() * 1e-6, 1) +
                             " MB decoded)"});
