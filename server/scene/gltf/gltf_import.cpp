@@ -1,9 +1,9 @@
 #include "server/scene/gltf/gltf_import.h"
 
+#include <algorithm>
 #include <mutex>
 
 #include <tbb/parallel_for.h>
-#include <tiny_gltf.h>
 
 #include "server/scene/gltf/gltf_accessor.h"
 #include "server/scene/gltf/gltf_file.h"
@@ -11,42 +11,65 @@
 #include "server/scene/motion/animation.h"
 
 namespace framelet {
+namespace {
 
-Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+/// The scene that is to be shown; 0 where the file has none.
+std::size_t default_scene(Json const& json) {
+    std::size_t const count = list(json, "scenes").size();
+    Json const& scene = member(json, "scene");
+    return count == 0 || scene.is_null() ? 0 : checked(scene, count, "scene");
+}
+
+void append(std::vector<std::string>& to, std::vector<std::string> const& lines) {
+    to.insert(to.end(), lines.begin(), lines.end());
+}
+
+} // namespace
+
+Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, ImportBudget& budget,
                   std::span<std::string const> needed_clips, Progress const& progress) {
     Scene scene;
+    std::vector<std::string> faults;
     progress("reading", 0);
-    auto const model = read_gltf(file, folder, budget, scene.warnings, progress);
-    GltfAccessors const accessors(*model, budget);
+    auto const file = read_gltf(path, folder, budget, scene.warnings, faults, progress);
+    Json const& json = file->json;
+    GltfAccessors const accessors(*file, budget);
     progress("reading", 1);
 
-    import_gltf_materials(*model, scene);
-    GltfMapping const mapping = import_gltf_nodes(*model, accessors, scene);
-    import_gltf_animations(*model, accessors, mapping.node, scene);
+    std::size_t const chosen = default_scene(json);
+    import_gltf_materials(json, scene, faults);
+    GltfMapping const mapping = import_gltf_nodes(json, chosen, accessors, scene, faults);
+    import_gltf_animations(json, accessors, mapping.node, scene, faults);
     clips_named(scene, needed_clips);
 
     std::size_t const mesh_count = mapping.used_meshes.size();
-    scene.meshes.resize(mesh_count);
-    std::vector<std::vector<std::string>> warnings(mesh_count);
     ImportBudget forecast = budget;
     for (std::size_t const mesh : mapping.used_meshes) {
-        reserve_gltf_mesh(*model, accessors, mesh, forecast);
+        reserve_gltf_mesh(json, accessors, mesh, forecast);
     }
+    std::vector<GltfMesh> meshes(mesh_count);
     std::mutex report;
     std::size_t done = 0;
     tbb::parallel_for(std::size_t(0), mesh_count, [&](std::size_t i) {
-        scene.meshes[i] = import_gltf_mesh(*model, accessors, mapping.used_meshes[i], warnings[i]);
+        meshes[i] = import_gltf_mesh(json, accessors, mapping.used_meshes[i]);
         std::lock_guard const lock(report);
         progress("unpacking meshes", static_cast<double>(++done) / static_cast<double>(mesh_count));
     });
-    for (auto const& lines : warnings) {
-        scene.warnings.insert(scene.warnings.end(), lines.begin(), lines.end());
+    for (GltfMesh& mesh : meshes) {
+        append(scene.warnings, mesh.remarks);
+        append(faults, mesh.faults);
+        scene.meshes.push_back(std::move(mesh.mesh));
     }
+    if (!faults.empty() &&
+        std::ranges::all_of(scene.meshes, [](Mesh const& mesh) { return mesh.primitives.empty(); })) {
+        throw InputError((file->lacks.empty() ? "" : file->lacks + "; ") + faults.front());
+    }
+    append(scene.warnings, faults);
 
-    auto const images = gltf_images(*model, accessors, folder);
+    auto const images = gltf_images(*file, accessors, folder, budget);
     scene.images = load_images(images, budget, scene.warnings, progress);
-    if (!model->scenes.empty()) {
-        scene.name = model->scenes[static_cast<std::size_t>(std::max(model->defaultScene, 0))].name;
+    if (Json::array_t const& scenes = list(json, "scenes"); !scenes.empty()) {
+        scene.name = text(scenes[chosen], "name");
     }
     return scene;
 }
