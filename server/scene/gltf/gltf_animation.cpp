@@ -77,6 +77,9 @@ void import_gltf_animations(Json const& json, GltfAccessors const& accessors, st
                                ? node_of[static_cast<std::size_t>(node)]
                                : none;
             std::string const path = text(target, "path");
+            if (path == "pointer") {
+                continue; // of KHR_animation_pointer, which has been noted
+            }
             if (!find_property(path, channel)) {
                 scene.warnings.push_back("animation '" + clip.name + "': '" + path + "' is not animated");
             } else if (channel.node != none) {

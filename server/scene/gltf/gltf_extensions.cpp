@@ -8,15 +8,16 @@
 namespace framelet {
 namespace {
 
-constexpr std::array<std::string_view, 7> known_extensions{
-    "KHR_lights_punctual", "KHR_texture_transform",      "KHR_materials_emissive_strength",
-    "KHR_materials_unlit", "KHR_materials_transmission", "KHR_mesh_quantization",
-    "EXT_texture_webp"};
+constexpr std::array<std::string_view, 9> known_extensions{
+    "EXT_mesh_gpu_instancing",         "EXT_texture_webp",      "KHR_lights_punctual",
+    "KHR_materials_emissive_strength", "KHR_materials_unlit",   "KHR_node_visibility",
+    "KHR_materials_transmission",      "KHR_mesh_quantization", "KHR_texture_transform"};
 
 /// What a file lacks of which an extension is not read.
 struct Loss {
     std::string_view extension;
     char const* what; ///< "... are missing"
+    bool in_part = false; ///< the rest of it is read
 };
 
 constexpr std::array losses{
@@ -29,6 +30,7 @@ constexpr std::array losses{
     Loss{"KHR_materials_dispersion", "colours of refraction are missing"},
     Loss{"KHR_materials_ior", "reflections are as strong as those of glass"},
     Loss{"KHR_materials_iridescence", "colours of thin films are missing"},
+    Loss{"KHR_materials_pbrSpecularGlossiness", "diffuse colours are shown, specular colours are missing", true},
     Loss{"KHR_materials_sheen", "the sheen of cloth is missing"},
     Loss{"KHR_materials_specular", "reflections have their usual strength and colour"},
     Loss{"KHR_materials_variants", "things show as in the first variant alone"},

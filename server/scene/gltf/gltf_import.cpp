@@ -38,7 +38,7 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
 
     std::size_t const chosen = default_scene(json);
     import_gltf_materials(json, scene, faults);
-    GltfMapping const mapping = import_gltf_nodes(json, chosen, accessors, scene, faults);
+    GltfMapping const mapping = import_gltf_nodes(json, chosen, accessors, budget, scene, faults);
     import_gltf_animations(json, accessors, mapping.node, scene, faults);
     clips_named(scene, needed_clips);
 

@@ -66,6 +66,16 @@ private:
     Faults faults_;
 };
 
+/// Takes what specular-glossiness says of diffuse colours, where metallic-roughness says nothing of them. What it says
+/// of highlights has no place here.
+void read_specular_glossiness(Json const& from, MaterialReader const& reader, Material& material) {
+    reader.read(from, "diffuseFactor", material.base_color);
+    material.base_color_texture = reader.use(from, "diffuseTexture");
+    material.metallic = 0;
+    bool const varies = member(from, "specularGlossinessTexture").is_object(); // which is not read
+    material.roughness = varies ? 1.0f : 1 - static_cast<float>(number(from, "glossinessFactor", 1));
+}
+
 Material make_material(Json const& from, MaterialReader const& reader) {
     Material material;
     Json const& pbr = member(from, "pbrMetallicRoughness");
@@ -87,6 +97,10 @@ Material make_material(Json const& from, MaterialReader const& reader) {
     material.double_sided = flag(from, "doubleSided", false);
     material.base_color_texture = reader.use(pbr, "baseColorTexture");
     material.metallic_roughness_texture = reader.use(pbr, "metallicRoughnessTexture");
+    Json const& glossy = extension(from, "KHR_materials_pbrSpecularGlossiness");
+    if (!glossy.is_null() && member(pbr, "baseColorFactor").is_null() && member(pbr, "baseColorTexture").is_null()) {
+        read_specular_glossiness(glossy, reader, material);
+    }
     material.normal_texture = reader.use(from, "normalTexture");
     material.occlusion_texture = reader.use(from, "occlusionTexture");
     material.emissive_texture = reader.use(from, "emissiveTexture");

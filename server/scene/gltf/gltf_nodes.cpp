@@ -1,3 +1,6 @@
+#include <algorithm>
+#include <utility>
+
 #include "server/scene/gltf/gltf_accessor.h"
 #include "server/scene/gltf/gltf_parts.h"
 #include "server/scene/reading/faults.h"
@@ -9,6 +12,7 @@ namespace {
 struct Pending {
     std::size_t node; ///< in the file
     Index parent; ///< likewise; `none` for a root
+    bool hidden; ///< by KHR_node_visibility of a node above it
 };
 
 std::string name_of(Json const& json, std::size_t node) {
@@ -136,16 +140,47 @@ Skin make_skin(Json const& from, GltfAccessors const& accessors, GltfMapping con
     return skin;
 }
 
+/// The places of instances of a mesh in its node (EXT_mesh_gpu_instancing).
+std::vector<Transform> read_instances(Json const& attributes, GltfAccessors const& accessors) {
+    auto const read = [&]<typename T>(char const* key, T const&) {
+        Index const accessor = index(attributes, key);
+        return accessor == none ? std::vector<T>() : accessors.read<T>(accessor);
+    };
+    std::vector<Vec3> const translations = read("TRANSLATION", Vec3());
+    std::vector<Vec4> const rotations = read("ROTATION", Vec4());
+    std::vector<Vec3> const scales = read("SCALE", Vec3());
+    std::size_t const count = std::max({translations.size(), rotations.size(), scales.size()});
+    for (auto const& [has, what] : {std::pair(translations.size(), " translations"),
+                                    std::pair(rotations.size(), " rotations"), std::pair(scales.size(), " scales")}) {
+        if (has != 0 && has != count) {
+            throw InputError("it has " + std::to_string(count) + " instances, but " + std::to_string(has) + what);
+        }
+    }
+    std::vector<Transform> out(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        out[i].translation = translations.empty() ? Vec3(0) : translations[i];
+        out[i].scale = scales.empty() ? Vec3(1) : scales[i];
+        if (!rotations.empty()) {
+            out[i].rotation = Quat(rotations[i].w, rotations[i].x, rotations[i].y, rotations[i].z);
+        }
+    }
+    return out;
+}
+
 /// Imports what a node has besides its place.
 class NodeContent {
 public:
-    NodeContent(Json const& json, GltfMapping& mapping, Scene& scene)
-        : json_(json), mapping_(mapping), scene_(scene), mesh_in_scene_(list(json, "meshes").size(), none) {}
+    NodeContent(Json const& json, GltfAccessors const& accessors, ImportBudget& budget, GltfMapping& mapping,
+                Scene& scene)
+        : json_(json), accessors_(accessors), budget_(budget), mapping_(mapping), scene_(scene),
+          mesh_in_scene_(list(json, "meshes").size(), none) {}
 
-    /// `node`: the file's node, and its place in the scene.
-    void import(Json const& from, Index node, Faults const& faults) {
-        if (Json const& mesh = member(from, "mesh"); !mesh.is_null()) {
+    /// `node`: the file's node, and its place in the scene, which is the last so far.
+    void import(Json const& from, Index node, bool hidden, Faults const& faults) {
+        if (Json const& mesh = member(from, "mesh"); !mesh.is_null() && !hidden) {
             faults.tried([&] { import_mesh(mesh, member(from, "skin"), node, faults); }, "");
+            Json const& instancing = extension(from, "EXT_mesh_gpu_instancing");
+            faults.tried([&] { import_instances(member(instancing, "attributes"), node); }, "; it is shown once");
         }
         if (Json const& camera = member(from, "camera"); !camera.is_null()) {
             Json::array_t const& cameras = list(json_, "cameras");
@@ -156,7 +191,7 @@ public:
                 },
                 "");
         }
-        if (Json const& light = extension(from, "KHR_lights_punctual"); !light.is_null()) {
+        if (Json const& light = extension(from, "KHR_lights_punctual"); !light.is_null() && !hidden) {
             Json::array_t const& lights = list(extension(json_, "KHR_lights_punctual"), "lights");
             faults.tried(
                 [&] {
@@ -182,7 +217,27 @@ private:
         }
     }
 
+    /// Gives the mesh of the node to a child of it for each instance.
+    void import_instances(Json const& attributes, Index node) {
+        std::vector<Transform> const places = read_instances(attributes, accessors_);
+        constexpr std::uint64_t node_bytes = 4 * sizeof(Node); // it, and what rendering makes of it
+        budget_.reserve(places.size(), node_bytes);
+        for (Transform const& place : places) {
+            Node instance = scene_.nodes[static_cast<std::size_t>(node)];
+            instance.name.clear();
+            instance.parent = node;
+            instance.local = place;
+            instance.matrix.reset();
+            scene_.nodes.push_back(std::move(instance));
+        }
+        if (!places.empty()) {
+            scene_.nodes[static_cast<std::size_t>(node)].mesh = none;
+        }
+    }
+
     Json const& json_;
+    GltfAccessors const& accessors_;
+    ImportBudget& budget_;
     GltfMapping& mapping_;
     Scene& scene_;
     std::vector<Index> mesh_in_scene_; ///< by the file's indices
@@ -190,24 +245,24 @@ private:
 
 } // namespace
 
-GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors, Scene& scene,
-                              std::vector<std::string>& faults) {
+GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors,
+                              ImportBudget& budget, Scene& scene, std::vector<std::string>& faults) {
     Json::array_t const& nodes = list(json, "nodes");
     Json::array_t const& scenes = list(json, "scenes");
     GltfMapping mapping;
     mapping.node.assign(nodes.size(), none);
-    NodeContent content(json, mapping, scene);
+    NodeContent content(json, accessors, budget, mapping, scene);
     std::vector<Index> parent(nodes.size(), none); // in the file, of nodes that are in the scene
     std::vector<Pending> pending;
-    auto const reach = [&](std::vector<std::size_t> const& children, Index from) {
+    auto const reach = [&](std::vector<std::size_t> const& children, Index from, bool hidden) {
         for (auto child = children.rbegin(); child != children.rend(); ++child) {
-            pending.push_back({*child, from});
+            pending.push_back({*child, from, hidden});
         }
     };
     reach(scenes.empty() ? parentless(json)
                          : existing(list(scenes[chosen], "nodes"), nodes.size(),
                                     {named("scene", chosen, text(scenes[chosen], "name")), faults}),
-          none);
+          none, false);
     while (!pending.empty()) {
         Pending const next = pending.back();
         pending.pop_back();
@@ -226,8 +281,9 @@ GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessor
         parent[next.node] = next.parent;
         scene.nodes.push_back(
             make_node(from, next.parent == none ? none : mapping.node[static_cast<std::size_t>(next.parent)], of_node));
-        content.import(from, index, of_node);
-        reach(existing(list(from, "children"), nodes.size(), of_node), static_cast<Index>(next.node));
+        bool const hidden = next.hidden || !flag(extension(from, "KHR_node_visibility"), "visible", true);
+        content.import(from, index, hidden, of_node);
+        reach(existing(list(from, "children"), nodes.size(), of_node), static_cast<Index>(next.node), hidden);
     }
     Json::array_t const& skins = list(json, "skins");
     for (std::size_t i = 0; i < skins.size(); ++i) {

@@ -37,9 +37,10 @@ struct GltfMapping {
 };
 
 /// Imports the nodes of the file's scene `chosen` (of all its nodes where it has no scenes), parents first, with their
-/// cameras, lights and skins. Throws InputError where they form no tree: a node is below itself, or has two parents.
-GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors, Scene& scene,
-                              std::vector<std::string>& faults);
+/// cameras, lights and skins. Reserves instances (EXT_mesh_gpu_instancing) in the budget. Throws InputError where they
+/// form no tree: a node is below itself, or has two parents.
+GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors,
+                              ImportBudget& budget, Scene& scene, std::vector<std::string>& faults);
 
 /// Imports the animations of nodes that are in the scene.
 void import_gltf_animations(Json const& json, GltfAccessors const& accessors, std::vector<Index> const& node_of,
