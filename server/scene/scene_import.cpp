@@ -12,6 +12,7 @@
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/import_check.h"
 #include "server/scene/reading/scene_folder.h"
+#include "server/scene/scene_axes.h"
 #include "server/scene/scene_merge.h"
 
 namespace framelet {
@@ -76,8 +77,12 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
             of_file.memory_bytes = budget.left();
             check_import(file, of_file, report);
         }
-        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.clips, report)
+        if (!is_gltf && !options.scene.empty()) {
+            throw InputError("--scene is for glTF; a file of another format has one scene");
+        }
+        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.scene, options.clips, report)
                               : import_assimp(file, folder, budget, report, is_checked);
+        orient_scene(scene, parse_up_axis(options.up), parse_unit(options.unit));
         finish_scene(scene, budget, report);
         scene.name = one_line(scene.name.empty() ? file.stem().string() : scene.name);
         for (AnimationClip& clip : scene.clips) {

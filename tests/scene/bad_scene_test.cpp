@@ -100,7 +100,8 @@ TEST(BadScene, NodesInCircles) {
               "node 1 is reached twice: as a child of node 0 and in the list of the scene"},
              {R"("scenes":[{"nodes":[0,0]}],"nodes":[{"mesh":0}])",
               "node 0 is reached twice: in the list of the scene and in the list of the scene"},
-             {R"("scene":3,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])", "scene 3 does not exist"}}) {
+             {R"("scene":3,"scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}])",
+              "scene 3, which it wants to be shown, does not exist; it has 0 (--scene"}}) {
         expect_error(folder.write("a.gltf", triangle_writer().json(triangle_mesh + nodes)), message);
     }
 }

@@ -9,15 +9,54 @@
 #include "server/scene/gltf/gltf_file.h"
 #include "server/scene/gltf/gltf_parts.h"
 #include "server/scene/motion/animation.h"
+#include "server/scene/reading/faults.h"
 
 namespace framelet {
 namespace {
 
-/// The scene that is to be shown; 0 where the file has none.
-std::size_t default_scene(Json const& json) {
-    std::size_t const count = list(json, "scenes").size();
-    Json const& scene = member(json, "scene");
-    return count == 0 || scene.is_null() ? 0 : checked(scene, count, "scene");
+/// The file's scenes by number and name, but for the one `without`.
+std::string scenes_of(Json const& json, std::size_t without) {
+    constexpr std::size_t most = 20;
+    Json::array_t const& scenes = list(json, "scenes");
+    std::string out;
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        std::string const name = text(scenes[i], "name");
+        if (i != without && i < most) {
+            out += (out.empty() ? "" : ", ") + std::to_string(i) + (name.empty() ? "" : " '" + name + "'");
+        }
+    }
+    return out + (scenes.size() > most ? ", ..." : "");
+}
+
+/// The scene of that name or else number; where none is wanted the one that the file says, with a remark on others.
+/// 0 where the file has none.
+std::size_t chosen_scene(Json const& json, std::string const& wanted, std::vector<std::string>& remarks) {
+    Json::array_t const& scenes = list(json, "scenes");
+    std::string const known = scenes.empty() ? "it has none" : "it has " + scenes_of(json, scenes.size());
+    if (wanted.empty()) {
+        Index const said = member(json, "scene").is_null() ? 0 : index(json, "scene");
+        auto const place = static_cast<std::size_t>(said);
+        if (!scenes.empty() && place >= scenes.size()) {
+            throw InputError("scene " + member(json, "scene").dump() +
+                             ", which it wants to be shown, does not exist; " + known + " (--scene chooses one)");
+        }
+        if (scenes.size() > 1) {
+            remarks.push_back(named("scene", place, text(scenes[place], "name")) +
+                              " is shown; --scene shows another: " + scenes_of(json, place));
+        }
+        return scenes.empty() ? 0 : place;
+    }
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        if (text(scenes[i], "name") == wanted) {
+            return i;
+        }
+    }
+    for (std::size_t i = 0; i < scenes.size(); ++i) {
+        if (std::to_string(i) == wanted) {
+            return i;
+        }
+    }
+    throw InputError("there is no scene '" + wanted + "' in it; " + known);
 }
 
 void append(std::vector<std::string>& to, std::vector<std::string> const& lines) {
@@ -27,7 +66,8 @@ void append(std::vector<std::string>& to, std::vector<std::string> const& lines)
 } // namespace
 
 Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, ImportBudget& budget,
-                  std::span<std::string const> needed_clips, Progress const& progress) {
+                  std::string const& wanted_scene, std::span<std::string const> needed_clips,
+                  Progress const& progress) {
     Scene scene;
     std::vector<std::string> faults;
     progress("reading", 0);
@@ -36,7 +76,7 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
     GltfAccessors const accessors(*file, budget);
     progress("reading", 1);
 
-    std::size_t const chosen = default_scene(json);
+    std::size_t const chosen = chosen_scene(json, wanted_scene, scene.warnings);
     import_gltf_materials(json, scene, faults);
     GltfMapping const mapping = import_gltf_nodes(json, chosen, accessors, budget, scene, faults);
     import_gltf_animations(json, accessors, mapping.node, scene, faults);

@@ -21,6 +21,10 @@ struct ImportOptions {
     /// Animation clips, by name, that the scene must have. A glTF file that is read alone is refused without them
     /// before its meshes and pictures are read; for all else `clips_named` does that.
     std::vector<std::string> clips;
+    /// The scene of a glTF file that is shown, by name or number (from 0). Empty: the one that the file says.
+    std::string scene;
+    /// What a file's coordinates mean where it does not say so (`parse_up_axis`, `parse_unit`).
+    std::string up = "y", unit = "m";
     /// Program, framelet-server itself, that tries a file before this process reads it. Empty: there is none, and while
     /// Assimp reads, this process as a whole gets no more memory than what is left of `memory_bytes`.
     std::filesystem::path checker;
