@@ -80,7 +80,7 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
         if (!is_gltf && !options.scene.empty()) {
             throw InputError("--scene is for glTF; a file of another format has one scene");
         }
-        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.scene, options.clips, report)
+        Scene scene = is_gltf ? import_gltf(file, folder, budget, options.scene, options.clips, is_checked, report)
                               : import_assimp(file, folder, budget, report, is_checked);
         orient_scene(scene, parse_up_axis(options.up), parse_unit(options.unit));
         finish_scene(scene, budget, report);

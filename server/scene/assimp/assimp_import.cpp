@@ -15,12 +15,12 @@
 #include "common/error.h"
 #include "server/scene/assimp/assimp_mend.h"
 #include "server/scene/assimp/assimp_parts.h"
-#include "server/scene/assimp/memory_limit.h"
 #include "server/scene/assimp/mesh_header.h"
 #include "server/scene/assimp/mtl_text.h"
 #include "server/scene/assimp/polygon.h"
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/held_exception.h"
+#include "server/scene/reading/memory_limit.h"
 
 namespace framelet {
 namespace {

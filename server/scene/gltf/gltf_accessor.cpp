@@ -132,6 +132,9 @@ std::span<std::byte const> GltfAccessors::view(Index buffer_view) const {
     if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= views.size()) {
         fail(what, "is used but does not exist");
     }
+    if (auto const decoded = file_.decoded_views.find(buffer_view); decoded != file_.decoded_views.end()) {
+        return decoded->second;
+    }
     Json const& view = views[static_cast<std::size_t>(buffer_view)];
     Index const buffer = index(view, "buffer");
     if (buffer < 0 || static_cast<std::size_t>(buffer) >= file_.buffers.size()) {
@@ -227,6 +230,10 @@ std::size_t GltfAccessors::count(Index accessor) const {
 
 bool GltfAccessors::has_view(Index accessor) const {
     return find(accessor).view != none;
+}
+
+bool GltfAccessors::is_normalized(Index accessor) const {
+    return find(accessor).normalized;
 }
 
 std::size_t GltfAccessors::components(Index accessor) const {

@@ -17,13 +17,15 @@ class GltfAccessors {
 public:
     GltfAccessors(GltfFile const& file, ImportBudget& budget) : file_(file), budget_(budget) {}
 
-    /// The bytes of a buffer view; throws where there is no such view, or the file does not hold all of it.
+    /// The bytes of a buffer view, decoded; throws where there is no such view, or the file does not hold all of it.
     std::span<std::byte const> view(Index buffer_view) const;
 
     /// Number of elements; throws where there is no such accessor, or the file does not hold so many.
     std::size_t count(Index accessor) const;
     /// False where all elements are zero, but for those that a sparse accessor replaces.
     bool has_view(Index accessor) const;
+    /// Whether integers stand for fractions.
+    bool is_normalized(Index accessor) const;
     /// Components of an element: 1 to 4, 9, 16.
     std::size_t components(Index accessor) const;
 
@@ -37,6 +39,8 @@ public:
         }
         return values;
     }
+
+    ImportBudget& budget() const { return budget_; }
 
     /// All components of all elements as they are stored; the accessor must have `components` unsigned integers.
     std::vector<std::uint32_t> read_integers(Index accessor, std::size_t components) const;

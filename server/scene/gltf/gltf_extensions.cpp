@@ -8,10 +8,11 @@
 namespace framelet {
 namespace {
 
-constexpr std::array<std::string_view, 9> known_extensions{
-    "EXT_mesh_gpu_instancing",         "EXT_texture_webp",      "KHR_lights_punctual",
-    "KHR_materials_emissive_strength", "KHR_materials_unlit",   "KHR_node_visibility",
-    "KHR_materials_transmission",      "KHR_mesh_quantization", "KHR_texture_transform"};
+constexpr std::array<std::string_view, 12> known_extensions{
+    "EXT_mesh_gpu_instancing", "EXT_meshopt_compression",    "EXT_texture_webp",
+    "KHR_lights_punctual",     "KHR_draco_mesh_compression", "KHR_materials_emissive_strength",
+    "KHR_materials_unlit",     "KHR_materials_transmission", "KHR_mesh_quantization",
+    "KHR_meshopt_compression", "KHR_node_visibility",        "KHR_texture_transform"};
 
 /// What a file lacks of which an extension is not read.
 struct Loss {
@@ -21,9 +22,7 @@ struct Loss {
 };
 
 constexpr std::array losses{
-    Loss{"EXT_meshopt_compression", "meshes that are compressed by it are missing"},
     Loss{"KHR_animation_pointer", "what it animates (materials, lights, visibility) stands still"},
-    Loss{"KHR_draco_mesh_compression", "meshes that are compressed by it are missing"},
     Loss{"KHR_materials_anisotropy", "highlights are round where they should be long"},
     Loss{"KHR_materials_clearcoat", "clear coats are missing"},
     Loss{"KHR_materials_diffuse_transmission", "light that shines through thin things is missing"},

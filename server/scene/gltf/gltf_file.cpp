@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "server/scene/gltf/gltf_accessor.h"
+#include "server/scene/gltf/gltf_compression.h"
 #include "server/scene/gltf/gltf_container.h"
 #include "server/scene/gltf/gltf_document.h"
 #include "server/scene/gltf/gltf_extensions.h"
@@ -189,6 +190,7 @@ std::unique_ptr<GltfFile> read_gltf(std::filesystem::path const& file, SceneFold
     read = 0;
     from = std::exchange(to, 1);
     read_buffers(*out, container.data, BufferReader(folder, budget, on_bytes), faults);
+    decompress_views(*out, budget, faults);
     return out;
 }
 

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <span>
 #include <string>
@@ -22,6 +23,7 @@ class GltfAccessors;
 struct GltfFile {
     Json json; ///< without `extras`
     std::vector<std::span<std::byte const>> buffers; ///< as long as they say; empty where they cannot be read
+    std::map<Index, std::span<std::byte const>> decoded_views; ///< buffer views that were compressed
     std::vector<std::vector<std::byte>> memory; ///< what these lie in
     std::string lacks; ///< what the file requires and the importer does not read, as a line; empty: nothing
 };

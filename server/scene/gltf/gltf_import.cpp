@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <mutex>
+#include <optional>
 
 #include <tbb/parallel_for.h>
 
@@ -10,6 +11,7 @@
 #include "server/scene/gltf/gltf_parts.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/reading/faults.h"
+#include "server/scene/reading/memory_limit.h"
 
 namespace framelet {
 namespace {
@@ -59,6 +61,15 @@ std::size_t chosen_scene(Json const& json, std::string const& wanted, std::vecto
     throw InputError("there is no scene '" + wanted + "' in it; " + known);
 }
 
+bool uses_draco(Json const& json) {
+    auto const is_compressed = [](Json const& primitive) {
+        return !extension(primitive, "KHR_draco_mesh_compression").is_null();
+    };
+    return std::ranges::any_of(list(json, "meshes"), [&](Json const& mesh) {
+        return std::ranges::any_of(list(mesh, "primitives"), is_compressed);
+    });
+}
+
 void append(std::vector<std::string>& to, std::vector<std::string> const& lines) {
     to.insert(to.end(), lines.begin(), lines.end());
 }
@@ -66,7 +77,7 @@ void append(std::vector<std::string>& to, std::vector<std::string> const& lines)
 } // namespace
 
 Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, ImportBudget& budget,
-                  std::string const& wanted_scene, std::span<std::string const> needed_clips,
+                  std::string const& wanted_scene, std::span<std::string const> needed_clips, bool is_checked,
                   Progress const& progress) {
     Scene scene;
     std::vector<std::string> faults;
@@ -87,6 +98,10 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
     for (std::size_t const mesh : mapping.used_meshes) {
         reserve_gltf_mesh(json, accessors, mesh, forecast);
     }
+    std::optional<MemoryLimit> limit; // Draco takes memory without asking
+    if (!is_checked && uses_draco(json)) {
+        limit.emplace(budget.left());
+    }
     std::vector<GltfMesh> meshes(mesh_count);
     std::mutex report;
     std::size_t done = 0;
@@ -95,6 +110,7 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
         std::lock_guard const lock(report);
         progress("unpacking meshes", static_cast<double>(++done) / static_cast<double>(mesh_count));
     });
+    limit.reset();
     for (GltfMesh& mesh : meshes) {
         append(scene.warnings, mesh.remarks);
         append(faults, mesh.faults);

@@ -17,6 +17,7 @@ namespace framelet {
 /// that lists the file's scenes where it is not among them. Throws before it reads meshes and pictures where the file
 /// lacks a clip of a name in `needed_clips`.
 Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                  std::string const& wanted_scene, std::span<std::string const> needed_clips, Progress const& progress);
+                  std::string const& wanted_scene, std::span<std::string const> needed_clips, bool is_checked,
+                  Progress const& progress);
 
 } // namespace framelet

@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "server/scene/gltf/gltf_accessor.h"
+#include "server/scene/gltf/gltf_compression.h"
 #include "server/scene/gltf/gltf_parts.h"
 #include "server/scene/reading/faults.h"
 
@@ -37,6 +39,9 @@ struct PrimitiveReader {
     GltfAccessors const& accessors;
     Json const& attributes;
     std::size_t vertex_count;
+    DracoMesh const* draco = nullptr; ///< has some of the attributes, where there is one
+
+    bool is_in_draco(std::string const& name) const { return draco && draco->has(name); }
 
     bool has(std::string const& name) const { return !member(attributes, name.c_str()).is_null(); }
 
@@ -53,11 +58,32 @@ struct PrimitiveReader {
 
     template <class T>
     std::vector<T> read(std::string const& name) const {
+        constexpr std::size_t width = sizeof(T) / sizeof(float);
+        if (has(name) && is_in_draco(name)) {
+            accessors.budget().reserve(vertex_count, sizeof(T));
+            std::vector<T> values(vertex_count);
+            draco->read(name, accessors.is_normalized(index(attributes, name.c_str())), width,
+                        reinterpret_cast<float*>(values.data()));
+            return values;
+        }
         return has(name) ? accessors.read<T>(accessor(name)) : std::vector<T>();
     }
 
+    std::size_t components(std::string const& name) const {
+        return is_in_draco(name) ? draco->components(name) : accessors.components(accessor(name));
+    }
+
+    std::vector<std::uint32_t> read_joints(std::string const& name) const {
+        constexpr std::size_t width = 4;
+        if (!is_in_draco(name)) {
+            return accessors.read_integers(accessor(name), width);
+        }
+        accessors.budget().reserve(vertex_count, width * sizeof(std::uint32_t));
+        return draco->read_integers(name, width);
+    }
+
     std::vector<Vec4> read_colors() const {
-        if (!has("COLOR_0") || accessors.components(accessor("COLOR_0")) == 4) {
+        if (!has("COLOR_0") || components("COLOR_0") == 4) {
             return read<Vec4>("COLOR_0");
         }
         std::vector<Vec4> colors;
@@ -76,7 +102,7 @@ struct PrimitiveReader {
             if (!has("JOINTS_" + suffix) || !has("WEIGHTS_" + suffix)) {
                 break;
             }
-            auto const joints = accessors.read_integers(accessor("JOINTS_" + suffix), 4);
+            auto const joints = read_joints("JOINTS_" + suffix);
             auto const weights = read<Vec4>("WEIGHTS_" + suffix);
             for (std::size_t i = 0; i < vertex_count; ++i) {
                 for (int k = 0; k < 4; ++k) {
@@ -103,9 +129,45 @@ struct PrimitiveReader {
     }
 };
 
+/// The mesh that has some of a primitive's attributes (KHR_draco_mesh_compression); nothing where there is none.
+std::optional<DracoMesh> draco_mesh(GltfAccessors const& accessors, Json const& primitive) {
+    Json const& compressed = extension(primitive, "KHR_draco_mesh_compression");
+    return compressed.is_null()
+               ? std::nullopt
+               : std::optional<DracoMesh>(std::in_place, accessors.view(index(compressed, "bufferView")),
+                                          member(compressed, "attributes"));
+}
+
+/// The vertices of a primitive, in the order in which its triangles use them.
+std::vector<std::uint32_t> read_order(GltfAccessors const& accessors, Json const& from, DracoMesh const* draco,
+                                      std::size_t vertex_count) {
+    std::vector<std::uint32_t> order;
+    Index const indices = index(from, "indices");
+    if (draco) {
+        order = draco->indices();
+    } else if (indices == none) {
+        order.resize(vertex_count);
+        std::iota(order.begin(), order.end(), 0u);
+    } else if (accessors.has_view(indices)) {
+        order = accessors.read_integers(indices, 1);
+    } else {
+        throw InputError("accessor " + std::to_string(indices) + " holds vertex indices, but has no buffer view");
+    }
+    for (std::uint32_t const vertex : order) {
+        if (vertex >= vertex_count) {
+            throw InputError("vertex index " + std::to_string(vertex) + " is out of range: there are " +
+                             std::to_string(vertex_count) + " vertices");
+        }
+    }
+    return order;
+}
+
 Primitive import_primitive(GltfAccessors const& accessors, Json const& from) {
     Json const& attributes = member(from, "attributes");
-    PrimitiveReader const reader{accessors, attributes, accessors.count(index(attributes, "POSITION"))};
+    std::optional<DracoMesh> const unpacked = draco_mesh(accessors, from);
+    DracoMesh const* const draco = unpacked ? &*unpacked : nullptr;
+    PrimitiveReader const reader{accessors, attributes,
+                                 draco ? draco->vertex_count() : accessors.count(index(attributes, "POSITION")), draco};
     Primitive primitive;
     primitive.material = index(from, "material");
     primitive.positions = reader.read<Vec3>("POSITION");
@@ -119,23 +181,9 @@ Primitive import_primitive(GltfAccessors const& accessors, Json const& from) {
         primitive.morph_targets.push_back(
             {offsets.read<Vec3>("POSITION"), offsets.read<Vec3>("NORMAL"), offsets.read<Vec3>("TANGENT")});
     }
-    std::vector<std::uint32_t> order;
-    if (Index const indices = index(from, "indices"); indices != none) {
-        if (!accessors.has_view(indices)) {
-            throw InputError("accessor " + std::to_string(indices) + " holds vertex indices, but has no buffer view");
-        }
-        order = accessors.read_integers(indices, 1);
-        for (std::uint32_t const vertex : order) {
-            if (vertex >= reader.vertex_count) {
-                throw InputError("vertex index " + std::to_string(vertex) + " is out of range: there are " +
-                                 std::to_string(reader.vertex_count) + " vertices");
-            }
-        }
-    } else {
-        order.resize(reader.vertex_count);
-        std::iota(order.begin(), order.end(), 0u);
-    }
-    primitive.triangles = make_triangles(order, size(from, "mode", triangles_mode));
+    // What Draco has decoded is a list of triangles, whatever it was.
+    primitive.triangles = make_triangles(read_order(accessors, from, draco, reader.vertex_count),
+                                         draco ? triangles_mode : size(from, "mode", triangles_mode));
     return primitive;
 }
 
