@@ -28,7 +28,8 @@ target_include_directories(flatbuffers_headers SYSTEM INTERFACE ${FLATBUFFERS_IN
 
 if(FRAMELET_SERVER)
   find_package(assimp REQUIRED)
-  find_package(TinyGLTF REQUIRED)
+  find_package(draco REQUIRED)
+  find_package(meshoptimizer REQUIRED)
   find_package(embree 4 QUIET)
   if(NOT embree_FOUND)
     find_package(embree 3.13 REQUIRED)

@@ -69,6 +69,9 @@ std::variant<ProgramCall, int> parse_options(int argc, char const* const* argv) 
         ->type_name("NAME")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
+    option("--scene", "Scene of a glTF file to show, by name or number from 0")->type_name("NAME|N");
+    option("--up", "Axis that is up, of files that do not say so or say it wrongly")->type_name("x|y|z");
+    option("--unit", "Unit of length, likewise: mm, cm, m, km, in or ft")->type_name("UNIT");
     flag("--allow-outside", "Read files that the scene names outside its own folder as well");
     flag("--watch", "Load the scene again when its files have changed");
     flag("--paused", "Start with the scene clock standing");

@@ -18,8 +18,9 @@ std::vector<std::string> kept_for_other_scenes(std::vector<std::string> const& o
     std::vector<std::string> out;
     for (std::size_t i = 0; i < options.size(); ++i) {
         std::string const name = options[i].substr(0, options[i].find('='));
-        bool const has_value = name == "--clip" || name == "--port" || name == "--log" || name == "--bind" ||
-                               name == "--token-file" || name == "--control-token-file" || name.starts_with("--tls-") ||
+        bool const has_value = name == "--clip" || name == "--scene" || name == "--up" || name == "--unit" ||
+                               name == "--port" || name == "--log" || name == "--bind" || name == "--token-file" ||
+                               name == "--control-token-file" || name.starts_with("--tls-") ||
                                name.starts_with("--metrics") || name.starts_with("--record");
         if (!has_value && name != "--allow-outside") {
             out.push_back(options[i]);

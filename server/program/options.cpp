@@ -7,6 +7,7 @@
 #include "common/command_line/standard_output.h"
 #include "common/error.h"
 #include "protocol/stream/token.h"
+#include "server/scene/scene_axes.h"
 
 namespace framelet {
 namespace {
@@ -49,6 +50,18 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
                    "Scene file: .gltf, .glb, .obj and what else the import library reads. Several are shown together, "
                    "each where it has its things. Of a folder alone the scenes in it are listed")
         ->required();
+    app.add_option("--scene", options.import.scene, "Scene of a glTF file to show, by name or number from 0")
+        ->type_name("NAME|N")
+        ->default_str("the one that the file says")
+        ->configurable(false); // `scene` is the file there
+    app.add_option("--up", options.import.up, "Axis that is up, of files that do not say so or say it wrongly")
+        ->type_name("x|y|z")
+        ->check(readable_by(parse_up_axis))
+        ->capture_default_str();
+    app.add_option("--unit", options.import.unit, "Unit of length, likewise: mm, cm, m, km, in or ft")
+        ->type_name("UNIT")
+        ->check(readable_by(parse_unit))
+        ->capture_default_str();
     app.add_flag("--allow-outside", options.import.allow_outside,
                  "Read files that the scene names outside its own folder as well");
     app.add_option("--scene-memory", scene_megabytes, "Most memory for what is made of the scene files")
@@ -181,6 +194,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     try {
         parse_command_line(app, argc, argv);
         options.log = parse_log_format(log);
+        if (!options.import.scene.empty() && options.scenes.size() > 1) {
+            throw InputError("--scene chooses a scene of one file: give that file alone");
+        }
         require_protection(options, insecure);
     } catch (CLI::ParseError const& error) {
         return error.get_exit_code() == 0 ? exit_usage(app, error) : end(usage_problem(app, error));

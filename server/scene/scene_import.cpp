@@ -18,6 +18,7 @@
 #include "server/scene/reading/import_budget.h"
 #include "server/scene/reading/import_check.h"
 #include "server/scene/reading/scene_folder.h"
+#include "server/scene/scene_axes.h"
 #include "server/scene/scene_merge.h"
 
 namespace framelet {
@@ -91,9 +92,14 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
             of_file.memory_bytes = budget.left();
             check_import(file, of_file, report);
         }
-        Scene scene = is_gltf                   ? import_gltf(file, folder, budget, options.clips, report)
+        if (!is_gltf && !options.scene.empty()) {
+            throw InputError("--scene is for glTF; a file of another format has one scene");
+        }
+        Scene scene = is_gltf
+                          ? import_gltf(file, folder, budget, options.scene, options.clips, options.is_serving, report)
                       : is_mesh_file(extension) ? import_mesh(file, folder, budget, report)
                                                 : import_assimp(file, folder, budget, report, options.is_serving);
+        orient_scene(scene, parse_up_axis(options.up), parse_unit(options.unit));
         finish_scene(scene, budget, report);
         if (!is_gltf && !is_mesh_file(extension) && scene.origin != glm::dvec3(0)) {
             scene.warnings.push_back(coarseness(scene.origin));

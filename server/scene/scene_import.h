@@ -1,5 +1,5 @@
-// Reads scene files. In: their paths. Out: a Scene value. glTF goes through tinygltf (exact to the specification:
-// sparse accessors, step and spline keys, samplers, extensions), everything else through Assimp.
+// Reads scene files. In: their paths. Out: a Scene value. glTF is read here (exact to the specification: sparse
+// accessors, step and spline keys, samplers, extensions), everything else through Assimp.
 #pragma once
 
 #include <filesystem>

@@ -159,7 +159,8 @@ TEST(SceneOpener, ShowsHowFarTheFileIsLoaded) {
 
 TEST(SceneOpener, OtherScenesHaveTheOptionsThatCountForAny) {
     SceneOpener opener(connect, [] {},
-                       {"--paused", "--clip=none", "--record-events", "/nonexistent/events", "--metrics-bind=wrong"});
+                       {"--paused", "--clip=none", "--scene=none", "--up", "z", "--record-events",
+                        "/nonexistent/events", "--metrics-bind=wrong"});
     opener.open_first({windmill}, {});
     EXPECT_TRUE(eventually([&] { return opener.poll() || opener.opening().empty(); }));
     EXPECT_NE(opener.take_complaint(), "");

@@ -43,15 +43,15 @@ private:
 
 TEST(View, BecomesTheViewerAndHandsOnWhatIsAsked) {
     Programs const programs("exit 7");
-    Process view(programs.framelet(),
-                 {"view", scene_file, "other.glb", "--size", "320x200", "--allow-outside", "--threads", "1", "--camera",
-                  "c.json", "--viewer-config=a.toml", "--server-config=b.toml", "--", "--quiet", "--exposure=1"});
+    Process view(programs.framelet(), {"view", scene_file, "other.glb", "--size", "320x200", "--allow-outside", "--up",
+                                       "z", "--threads", "1", "--camera", "c.json", "--viewer-config=a.toml",
+                                       "--server-config=b.toml", "--", "--quiet", "--exposure=1"});
     EXPECT_EQ(view.wait(patience), 7) << view.errors();
     EXPECT_EQ(view.errors(), "");
     EXPECT_EQ(programs.arguments(),
               "--size=320x200\n--camera=c.json\n--config=a.toml\n--open=" + scene_file +
-                  "\n--open=other.glb\n--needs-scene\n--server-option=--allow-outside\n--server-option=--threads=1\n"
-                  "--server-option=--config=b.toml\n--server-option=--quiet\n"
+                  "\n--open=other.glb\n--needs-scene\n--server-option=--up=z\n--server-option=--allow-outside\n"
+                  "--server-option=--threads=1\n--server-option=--config=b.toml\n--server-option=--quiet\n"
                   "--server-option=--exposure=1\n");
 }
 

@@ -58,9 +58,32 @@ TEST(RenderScene, OneOfManyMovesAndTheOthersStay) {
     }
 }
 
-TEST(RenderScene, FlatInstancesVanishAndComeBack) {
+TEST(RenderScene, FlattenedInstancesShow) {
+    for (float const across : {1.0f, -1.0f}) {
+        // A roof whose ridge is 3 high, flattened along its height, by its node alone or in a turned one below it.
+        Scene scene = one_sheet();
+        Primitive& roof = scene.meshes[0].primitives[0];
+        roof = quad({-1, -1, 0}, {2, 0, 3}, {0, 2, 0}, 0);
+        RenderScene ready(scene, black());
+        ScenePose pose = evaluate_pose(scene, {}, 0);
+        Mat4 flat(1);
+        flat[0][0] = across;
+        flat[2][2] = 0;
+        Mat4 turned(Vec4(0, 1, 0, 0), Vec4(-1, 0, 0, 0), Vec4(0, 0, 1, 0), Vec4(0, 0, 0, 1));
+        for (Mat4 const& world : {flat, flat * turned, turned * flat}) {
+            pose.world_from_node[0] = world;
+            ready.set_pose(pose);
+            EXPECT_NEAR(depth_at(ready, {0.5f, 0.25f, 5}), 5, 1e-3f);
+            EXPECT_NEAR(depth_at(ready, {-0.9f, -0.9f, 5}), 5, 1e-3f);
+            EXPECT_TRUE(std::isinf(depth_at(ready, {1.01f, 0, 5})));
+            EXPECT_TRUE(std::isinf(depth_at(ready, {0, -1.01f, 5})));
+        }
+    }
+}
+
+TEST(RenderScene, WhatIsALineVanishesAndComesBack) {
     Transform flat;
-    flat.scale = {0, 1, 1};
+    flat.scale = {0, 1, 0};
     Scene const scene = one_sheet(flat);
     RenderScene ready(scene, black());
     EXPECT_TRUE(std::isinf(depth_at(ready, {0, 0, 5})));

@@ -87,6 +87,42 @@ TEST(GltfImport, NodesParentsFirstOnlyOfTheDefaultScene) {
     EXPECT_NEAR(glm::distance(Vec3(pose.world_from_node[2][3]), Vec3(24, 12, -10)), 0, 1e-4f);
 }
 
+TEST(GltfImport, OtherScenesAreNamedAndCanBeChosen) {
+    TemporaryFolder const folder;
+    GltfWriter writer;
+    writer.array(triangle_positions, "VEC3");
+    auto const file = folder.write(
+        "a.gltf", writer.json(R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],"scene":1,"scenes":[)"
+                              R"({"nodes":[0]},{"name":"day","nodes":[1]},{"name":"night","nodes":[2]},)"
+                              R"({"name":"0","nodes":[3]}],"nodes":[{"name":"a","mesh":0},{"name":"b","mesh":0},)"
+                              R"({"name":"c","mesh":0},{"name":"d","mesh":0}])"));
+    Scene const said = import_scene(file);
+    EXPECT_EQ(said.nodes.at(0).name, "b");
+    ASSERT_EQ(said.warnings.size(), 1u);
+    EXPECT_EQ(said.warnings[0], "scene 1 'day' is shown; --scene shows another: 0, 2 'night', 3 '0'");
+    ImportOptions options;
+    for (auto const& [wanted, node] : {std::pair("night", "c"), {"2", "c"}, {"1", "b"}, {"0", "d"}, {"3", "d"}}) {
+        options.scene = wanted;
+        Scene const scene = import_scene(file, {}, options);
+        EXPECT_EQ(scene.nodes.at(0).name, node) << wanted << ": a name goes before a number";
+        EXPECT_TRUE(scene.warnings.empty()) << wanted;
+    }
+    for (char const* const wanted : {"4", "-1", "dusk", "01"}) {
+        options.scene = wanted;
+        try {
+            import_scene(file, {}, options);
+            ADD_FAILURE() << wanted;
+        } catch (InputError const& error) {
+            EXPECT_NE(
+                std::string(error.what())
+                    .find(std::string("there is no scene '") + wanted + "' in it; it has 0, 1 'day', 2 'night', 3 '0'"),
+                std::string::npos)
+                << error.what();
+        }
+    }
+    EXPECT_THROW(import_scene(folder.write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), {}, options), InputError);
+}
+
 TEST(GltfImport, AllRootsWhereThereIsNoScene) {
     EXPECT_EQ(import_triangle(R"("nodes":[{"children":[1]},{"mesh":0},{"mesh":0}])").nodes.size(), 3u);
 }

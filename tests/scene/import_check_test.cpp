@@ -41,12 +41,14 @@ protected:
 TEST_F(ImportCheck, IsAskedAboutTheFileWithinTheSameLimits) {
     options_.memory_bytes = std::uint64_t(300) << 20;
     options_.allow_outside = true;
+    options_.up = "z";
+    options_.unit = "mm";
     be("echo \"$@\" > " + (folder_.path() / "asked").string());
     EXPECT_EQ(complaint(), "");
     std::ifstream asked(folder_.path() / "asked");
     std::string line;
     std::getline(asked, line);
-    EXPECT_EQ(line, "--info --news 1 --quiet --scene-memory 300 --allow-outside -- " + file_.string());
+    EXPECT_EQ(line, "--info --news 1 --quiet --scene-memory 300 --allow-outside --up z --unit mm -- " + file_.string());
 }
 
 TEST_F(ImportCheck, WhatItSaysIsSaidAsIfItHadBeenReadHere) {

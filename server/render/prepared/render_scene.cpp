@@ -37,6 +37,25 @@ bool invertible(Mat3 const& m) {
     return largest < 1 / least_instance_scale;
 }
 
+/// The transform, or where it flattens space to a plane one that leaves a little of the third direction: what is
+/// flattened shows.
+Mat3 traceable_transform(Mat3 const& m) {
+    constexpr float thickness = 1e-5f; // of its size
+    if (invertible(m)) {
+        return m;
+    }
+    // Its cofactors, of one such matrix, lead from the direction that is lost to the normal of the plane.
+    Mat3 const cofactors(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+    auto const length = [](Mat3 const& of) {
+        return std::sqrt(glm::dot(of[0], of[0]) + glm::dot(of[1], of[1]) + glm::dot(of[2], of[2]));
+    };
+    float const size = length(m);
+    float const area = length(cofactors);
+    bool const is_plane = area > 1e-6f * size * size;
+    float const side = glm::determinant(m) < 0 ? -1.0f : 1.0f;
+    return is_plane ? m + cofactors * (side * thickness * size / area) : m;
+}
+
 std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& library) {
     std::vector<Geometry> out;
     for (Primitive const& primitive : mesh.primitives) {
@@ -173,7 +192,7 @@ void RenderScene::set_transform(Placement const& placement) {
     Mat4 const world = placement.skin ? Mat4(1) : pose_.world_from_node[placement.node];
     Instance& instance = prepared_->instances[placement.instance];
     instance.geometries = prepared_->meshes[placement.mesh];
-    instance.linear = Mat3(world);
+    instance.linear = traceable_transform(Mat3(world));
     instance.translation = Vec3(world[3]);
     bool const present = invertible(instance.linear) && traceable(instance.translation);
     if (present) {

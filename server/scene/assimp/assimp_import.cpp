@@ -19,11 +19,11 @@
 #include "server/scene/assimp/assimp_log.h"
 #include "server/scene/assimp/assimp_mend.h"
 #include "server/scene/assimp/assimp_parts.h"
-#include "server/scene/assimp/memory_limit.h"
 #include "server/scene/assimp/mesh_header.h"
 #include "server/scene/assimp/polygon.h"
 #include "server/scene/finish/finish_parts.h"
 #include "server/scene/reading/held_exception.h"
+#include "server/scene/reading/memory_limit.h"
 
 namespace framelet {
 namespace {

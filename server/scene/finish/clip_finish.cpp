@@ -26,14 +26,15 @@ std::size_t drop_repeated_keys(AnimationChannel& channel) {
     return dropped;
 }
 
-/// True when the channel can be played; throws where its numbers are no numbers.
+/// True where the channel can be played.
 bool finish_channel(Scene& scene, AnimationClip const& clip, AnimationChannel& channel) {
     Node& node = scene.nodes[static_cast<std::size_t>(channel.node)];
     std::string const what = "animation '" + clip.name + "'";
     auto const finite = [](float value) { return in_range(value); };
     if (!std::all_of(channel.times.begin(), channel.times.end(), finite) ||
         !std::all_of(channel.values.begin(), channel.values.end(), finite)) {
-        throw InputError(what + " has keys that are not numbers");
+        scene.warnings.push_back(what + " has keys that are not numbers; what they move stands still");
+        return false;
     }
     if (std::size_t const dropped = drop_repeated_keys(channel)) {
         scene.warnings.push_back(what + ": " + counted(dropped, "key") +

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
+#include "server/scene/reading/faults.h"
 #include "server/scene/scene.h"
 
 namespace framelet {
@@ -20,11 +20,6 @@ void finish_nodes(Scene& scene);
 /// Checks and completes the clips: afterwards keys are finite, their times increase, values fit, clips have their
 /// duration; those that move nothing are removed.
 void finish_clips(Scene& scene);
-
-/// The name of a thing for messages: "mesh 3 'door'".
-inline std::string named(char const* kind, std::size_t index, std::string const& name) {
-    return std::string(kind) + " " + std::to_string(index) + (name.empty() ? "" : " '" + name + "'");
-}
 
 /// True where the number is finite, and at most `max_coordinate` without its sign.
 inline bool in_range(float value) {

@@ -17,10 +17,15 @@ void finish_morph_weights(Scene& scene) {
     };
     for (std::size_t i = 0; i < scene.meshes.size(); ++i) {
         Mesh& mesh = scene.meshes[i];
-        std::size_t const targets = mesh.primitives.empty() ? 0 : mesh.primitives.front().morph_targets.size();
+        std::size_t targets = 0;
         for (Primitive const& primitive : mesh.primitives) {
+            targets = std::max(targets, primitive.morph_targets.size());
+        }
+        for (Primitive& primitive : mesh.primitives) {
             if (primitive.morph_targets.size() != targets) {
-                throw InputError(named("mesh", i, mesh.name) + ": its primitives have different morph targets");
+                scene.warnings.push_back(named("mesh", i, mesh.name) +
+                                         ": its primitives have different morph targets; those without stand still");
+                primitive.morph_targets.resize(targets);
             }
         }
         repair(mesh.morph_weights, targets);
@@ -51,14 +56,39 @@ void finish_transforms(Scene& scene) {
             }
         }
         if (!ok) {
-            throw InputError(named("node", i, node.name) + " has a transform that is not a number or out of range");
+            scene.warnings.push_back(named("node", i, node.name) +
+                                     " has a transform that is not a number or out of range; it is passed over");
+            local = {};
+            node.matrix.reset();
         }
         local.rotation = unit_rotation(local.rotation);
     }
 }
 
-/// Takes skins off that have joints outside the scene, or whose mesh has no influences. Throws InputError where an
-/// influence names a joint that its skin lacks, or an inverse bind matrix is not a number.
+bool is_usable(Mat4 const& matrix) {
+    bool ok = true;
+    for (int c = 0; c < 4; ++c) {
+        ok = ok && glm::length(matrix[c]) <= max_coordinate;
+    }
+    return ok;
+}
+
+/// The first joint that an influence names and a skin of `joints` lacks; -1 where there is none.
+int lacking_joint(Mesh const& mesh, std::size_t joints) {
+    for (Primitive const& primitive : mesh.primitives) {
+        for (JointInfluence const& influence : primitive.influences) {
+            for (std::uint16_t const joint : influence.joints) {
+                if (joint >= joints) {
+                    return joint;
+                }
+            }
+        }
+    }
+    return -1;
+}
+
+/// Takes skins off that have joints outside the scene or matrices that are no numbers, and off meshes that have no
+/// influences, or some that name a joint which their skin lacks.
 void finish_skins(Scene& scene) {
     for (std::size_t i = 0; i < scene.skins.size(); ++i) {
         Skin& skin = scene.skins[i];
@@ -67,12 +97,10 @@ void finish_skins(Scene& scene) {
             scene.warnings.push_back(named("skin", i, "") + " has joints outside the scene; shown without it");
             skin = {};
         }
-        for (Mat4 const& matrix : skin.inverse_bind_matrices) {
-            for (int c = 0; c < 4; ++c) {
-                if (!(glm::length(matrix[c]) <= max_coordinate)) {
-                    throw InputError(named("skin", i, "") + " has an inverse bind matrix that is not a number");
-                }
-            }
+        if (!std::ranges::all_of(skin.inverse_bind_matrices, is_usable)) {
+            scene.warnings.push_back(named("skin", i, "") +
+                                     " has an inverse bind matrix that is not a number; shown without it");
+            skin = {};
         }
     }
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
@@ -88,18 +116,16 @@ void finish_skins(Scene& scene) {
             node.skin = none;
             continue;
         }
+        if (int const joint = lacking_joint(mesh, joints); joint >= 0) {
+            scene.warnings.push_back(named("mesh", static_cast<std::size_t>(node.mesh), mesh.name) + " uses joint " +
+                                     std::to_string(joint) + " of a skin with " + std::to_string(joints) +
+                                     "; shown without it");
+            node.skin = none;
+            continue;
+        }
         for (Primitive& primitive : mesh.primitives) {
             if (primitive.influences.empty()) { // scene.h promises influences where a node has a skin
                 primitive.influences.assign(primitive.positions.size(), JointInfluence{{}, {1, 0, 0, 0}});
-            }
-            for (JointInfluence const& influence : primitive.influences) {
-                for (std::uint16_t const joint : influence.joints) {
-                    if (joint >= joints) {
-                        throw InputError(named("mesh", static_cast<std::size_t>(node.mesh), mesh.name) +
-                                         " uses joint " + std::to_string(joint) + " of a skin with " +
-                                         std::to_string(joints));
-                    }
-                }
             }
         }
     }

@@ -60,13 +60,14 @@ void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress)
     struct Job {
         std::size_t mesh, primitive;
         PrimitiveRepairs repairs;
+        std::vector<std::string> faults; ///< why it cannot be shown; empty: it can
     };
     std::vector<Job> jobs;
     std::size_t triangles = 0;
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
         std::erase_if(scene.meshes[m].primitives, [](Primitive const& p) { return p.triangles.empty(); });
         for (std::size_t p = 0; p < scene.meshes[m].primitives.size(); ++p) {
-            jobs.push_back({m, p, {}});
+            jobs.push_back({m, p, {}, {}});
             Primitive const& primitive = scene.meshes[m].primitives[p];
             triangles += primitive.triangles.size();
             if (primitive.normals.empty()) { // flat shading gives every triangle its own vertices
@@ -83,21 +84,34 @@ void finish_meshes(Scene& scene, ImportBudget& budget, Progress const& progress)
         Mesh& mesh = scene.meshes[jobs[i].mesh];
         Primitive& primitive = mesh.primitives[jobs[i].primitive];
         std::size_t const count = primitive.triangles.size();
-        try {
-            jobs[i].repairs =
-                finish_primitive(primitive, scene.materials[static_cast<std::size_t>(primitive.material)]);
-        } catch (InputError const& error) {
-            throw InputError(named("mesh", jobs[i].mesh, mesh.name) + ": " + error.what());
-        }
+        Faults(named("mesh", jobs[i].mesh, mesh.name), jobs[i].faults)
+            .tried(
+                [&] {
+                    jobs[i].repairs =
+                        finish_primitive(primitive, scene.materials[static_cast<std::size_t>(primitive.material)]);
+                },
+                "; that part is not shown");
         std::lock_guard const lock(report);
         done += count;
         progress("meshes", static_cast<double>(done) / static_cast<double>(triangles));
     });
     std::size_t normals = 0;
     std::size_t other = 0;
+    std::size_t broken = 0;
     for (Job const& job : jobs) {
         normals += job.repairs.normals;
         other += job.repairs.other;
+        if (!job.faults.empty()) {
+            ++broken;
+            scene.warnings.insert(scene.warnings.end(), job.faults.begin(), job.faults.end());
+            scene.meshes[job.mesh].primitives[job.primitive].triangles.clear();
+        }
+    }
+    if (broken > 0 && broken == jobs.size()) {
+        throw InputError(scene.warnings[scene.warnings.size() - broken]);
+    }
+    for (Mesh& mesh : scene.meshes) {
+        std::erase_if(mesh.primitives, [](Primitive const& primitive) { return primitive.triangles.empty(); });
     }
     if (normals > 0) {
         scene.warnings.push_back(counted(normals, "unusable normal") + " taken from the triangles");
@@ -159,17 +173,24 @@ void reserve_copies(Scene const& scene, ImportBudget& budget) {
     }
 }
 
-/// Scales that are each in range may still multiply to something that is not.
-void check_placement(Scene const& scene) {
+/// Scales that are each in range may still multiply to something that is not: the first node whose place is out of
+/// range loses its transform.
+void finish_placement(Scene& scene) {
     std::vector<glm::dmat4> world(scene.nodes.size());
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        Node const& node = scene.nodes[i];
-        glm::dmat4 const local = node.matrix ? *node.matrix : matrix_of(node.local);
-        world[i] = node.parent == none ? local : world[static_cast<std::size_t>(node.parent)] * local;
+        Node& node = scene.nodes[i];
+        glm::dmat4 const above = node.parent == none ? glm::dmat4(1) : world[static_cast<std::size_t>(node.parent)];
+        world[i] = above * (node.matrix ? *node.matrix : matrix_of(node.local));
+        bool ok = true;
         for (int c = 0; c < 4; ++c) {
-            if (!(glm::length(glm::dvec3(world[i][c])) <= max_coordinate)) {
-                throw InputError(named("node", i, node.name) + " is placed out of range");
-            }
+            ok = ok && glm::length(glm::dvec3(world[i][c])) <= max_coordinate;
+        }
+        if (!ok) {
+            scene.warnings.push_back(named("node", i, node.name) +
+                                     " is placed out of range; its transform is passed over");
+            node.local = {};
+            node.matrix.reset();
+            world[i] = above;
         }
     }
 }
@@ -182,12 +203,12 @@ void finish_scene(Scene& scene, ImportBudget& budget, Progress const& progress) 
     finish_meshes(scene, budget, progress);
     finish_nodes(scene);
     finish_clips(scene);
+    finish_placement(scene);
     set_origin(scene);
     centre_meshes(scene);
     reserve_copies(scene, budget);
     finish_lights(scene);
     finish_cameras(scene);
-    check_placement(scene);
 }
 
 } // namespace framelet

@@ -1,15 +1,19 @@
 #include "server/scene/gltf/gltf_accessor.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <limits>
-
-#include <tiny_gltf.h>
+#include <string_view>
+#include <utility>
 
 #include "common/error.h"
 
 namespace framelet {
 namespace {
+
+/// Component types, by the numbers of the specification (glTF 2.0 section 3.6.2.2).
+enum ComponentType : std::uint64_t { i8 = 5120, u8 = 5121, i16 = 5122, u16 = 5123, u32 = 5125, f32 = 5126 };
 
 struct Layout {
     std::size_t components = 0;
@@ -20,10 +24,6 @@ struct Layout {
 
 [[noreturn]] void fail(std::string const& what, std::string const& why) {
     throw InputError(what + " " + why);
-}
-
-std::string accessor_name(int index) {
-    return "accessor " + std::to_string(index);
 }
 
 /// The first of `count` elements of a buffer view from byte `offset` on; all of them are checked to lie inside.
@@ -57,170 +57,221 @@ void convert(std::byte const* from, std::size_t components, bool normalized, flo
 }
 
 /// Converts one element to floats (glTF 2.0 section 3.6.2.2: c / max, not below -1, where normalised).
-void convert_element(int type, bool normalized, std::byte const* from, std::size_t components, float* out) {
+void convert_element(std::uint64_t type, bool normalized, std::byte const* from, std::size_t components, float* out) {
     switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
+    case i8:
         return convert<std::int8_t>(from, components, normalized, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case u8:
         return convert<std::uint8_t>(from, components, normalized, out);
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
+    case i16:
         return convert<std::int16_t>(from, components, normalized, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case u16:
         return convert<std::uint16_t>(from, components, normalized, out);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
+    case u32:
         return convert<std::uint32_t>(from, components, false, out);
     default:
         std::memcpy(out, from, components * sizeof(float));
     }
 }
 
-std::uint32_t load_unsigned(int type, std::byte const* from) {
+std::uint32_t load_unsigned(std::uint64_t type, std::byte const* from) {
     switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case u8:
         return load<std::uint8_t>(from);
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case u16:
         return load<std::uint16_t>(from);
     default:
         return load<std::uint32_t>(from);
     }
 }
 
-bool is_unsigned(int type) {
-    return type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE || type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
-           type == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+bool is_unsigned(std::uint64_t type) {
+    return type == u8 || type == u16 || type == u32;
 }
 
-std::size_t component_size(int type, std::string const& what) {
+std::size_t component_size(std::uint64_t type, std::string const& what) {
     switch (type) {
-    case TINYGLTF_COMPONENT_TYPE_BYTE:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE:
+    case i8:
+    case u8:
         return 1;
-    case TINYGLTF_COMPONENT_TYPE_SHORT:
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT:
+    case i16:
+    case u16:
         return 2;
-    case TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT:
-    case TINYGLTF_COMPONENT_TYPE_FLOAT:
+    case u32:
+    case f32:
         return 4;
     default:
         fail(what, "has the unknown component type " + std::to_string(type));
     }
 }
 
-/// Calls `visit(index, bytes)` for every element, those that a sparse accessor replaces last.
-template <class Visit>
-void for_each_element(GltfAccessors const& accessors, tinygltf::Model const& model, tinygltf::Accessor const& accessor,
-                      std::string const& what, Visit const& visit) {
-    Layout layout{static_cast<std::size_t>(tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(accessor.type))),
-                  component_size(accessor.componentType, what), 0};
-    if (accessor.bufferView >= 0) {
-        std::span<std::byte const> const view = accessors.view(accessor.bufferView);
-        std::size_t const stride = model.bufferViews[static_cast<std::size_t>(accessor.bufferView)].byteStride;
-        layout.stride = stride ? stride : layout.element_size();
-        std::byte const* const first = elements_of(view, accessor.byteOffset, accessor.count, layout, what);
-        for (std::size_t i = 0; i < accessor.count; ++i) {
-            visit(i, first + i * layout.stride);
-        }
-    }
-    if (accessor.sparse.isSparse && accessor.sparse.count > 0) {
-        auto const& sparse = accessor.sparse;
-        auto const count = static_cast<std::size_t>(sparse.count);
-        if (!is_unsigned(sparse.indices.componentType)) {
-            fail(what, "has sparse indices of the wrong type");
-        }
-        std::size_t const index_size = component_size(sparse.indices.componentType, what);
-        // Negative offsets become huge and are refused like any other that is too large.
-        std::byte const* const indices = elements_of(accessors.view(sparse.indices.bufferView),
-                                                     static_cast<std::uint64_t>(sparse.indices.byteOffset), count,
-                                                     {1, index_size, index_size}, what + " (sparse indices)");
-        layout.stride = layout.element_size();
-        std::byte const* const values =
-            elements_of(accessors.view(sparse.values.bufferView), static_cast<std::uint64_t>(sparse.values.byteOffset),
-                        count, layout, what + " (sparse values)");
-        for (std::size_t i = 0; i < count; ++i) {
-            std::uint32_t const index = load_unsigned(sparse.indices.componentType, indices + i * index_size);
-            if (index >= accessor.count) {
-                fail(what, "has the sparse index " + std::to_string(index) + ", but only " +
-                               std::to_string(accessor.count) + " elements");
-            }
-            visit(index, values + i * layout.stride);
-        }
-    }
+/// Components of an element; 0 where the type is none.
+std::size_t components_of(std::string_view type) {
+    constexpr std::array<std::pair<std::string_view, std::size_t>, 7> known{
+        {{"SCALAR", 1}, {"VEC2", 2}, {"VEC3", 3}, {"VEC4", 4}, {"MAT2", 4}, {"MAT3", 9}, {"MAT4", 16}}};
+    auto const* const found = std::ranges::find(known, type, &std::pair<std::string_view, std::size_t>::first);
+    return found == known.end() ? 0 : found->second;
 }
 
 } // namespace
 
-std::span<std::byte const> GltfAccessors::view(int buffer_view) const {
+struct GltfAccessors::Accessor {
+    std::string what; ///< for messages
+    std::uint64_t component_type;
+    std::size_t components;
+    bool normalized;
+    std::uint64_t count;
+    Index view; ///< `none`: all elements are zero, but for those that `sparse` replaces
+    std::uint64_t offset; ///< bytes
+    Json const& sparse; ///< null where it is not
+};
+
+std::span<std::byte const> GltfAccessors::view(Index buffer_view) const {
+    Json::array_t const& views = list(file_.json, "bufferViews");
     std::string const what = "buffer view " + std::to_string(buffer_view);
-    if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= model_.bufferViews.size()) {
+    if (buffer_view < 0 || static_cast<std::size_t>(buffer_view) >= views.size()) {
         fail(what, "is used but does not exist");
     }
-    tinygltf::BufferView const& view = model_.bufferViews[static_cast<std::size_t>(buffer_view)];
-    if (view.buffer < 0 || static_cast<std::size_t>(view.buffer) >= model_.buffers.size()) {
-        fail(what, "is of buffer " + std::to_string(view.buffer) + ", which does not exist");
+    if (auto const decoded = file_.decoded_views.find(buffer_view); decoded != file_.decoded_views.end()) {
+        return decoded->second;
     }
-    auto const& data = model_.buffers[static_cast<std::size_t>(view.buffer)].data;
-    if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset) {
-        fail(what, "reaches beyond its buffer: " + std::to_string(view.byteLength) + " bytes from byte " +
-                       std::to_string(view.byteOffset) + " of " + std::to_string(data.size()));
+    Json const& view = views[static_cast<std::size_t>(buffer_view)];
+    Index const buffer = index(view, "buffer");
+    if (buffer < 0 || static_cast<std::size_t>(buffer) >= file_.buffers.size()) {
+        fail(what, "is of buffer " + std::to_string(buffer) + ", which does not exist");
     }
-    return std::as_bytes(std::span(data)).subspan(view.byteOffset, view.byteLength);
+    std::span<std::byte const> const data = file_.buffers[static_cast<std::size_t>(buffer)];
+    std::uint64_t const offset = size(view, "byteOffset", 0);
+    std::uint64_t const length = size(view, "byteLength", 0);
+    if (offset > data.size() || length > data.size() - offset) {
+        fail(what, "reaches beyond its buffer: " + std::to_string(length) + " bytes from byte " +
+                       std::to_string(offset) + " of " + std::to_string(data.size()));
+    }
+    return data.subspan(offset, length);
 }
 
-tinygltf::Accessor const& GltfAccessors::find(int accessor) const {
-    if (accessor < 0 || static_cast<std::size_t>(accessor) >= model_.accessors.size()) {
-        fail(accessor_name(accessor), "is used but does not exist");
+GltfAccessors::Accessor GltfAccessors::find(Index accessor) const {
+    Json::array_t const& accessors = list(file_.json, "accessors");
+    std::string what = "accessor " + std::to_string(accessor);
+    if (accessor < 0 || static_cast<std::size_t>(accessor) >= accessors.size()) {
+        fail(what, "is used but does not exist");
     }
-    return model_.accessors[static_cast<std::size_t>(accessor)];
+    Json const& from = accessors[static_cast<std::size_t>(accessor)];
+    try {
+        return {std::move(what),
+                size(from, "componentType", 0),
+                components_of(text(from, "type")),
+                flag(from, "normalized", false),
+                size(from, "count", 0),
+                index(from, "bufferView"),
+                size(from, "byteOffset", 0),
+                member(from, "sparse")};
+    } catch (InputError const& error) {
+        fail("accessor " + std::to_string(accessor) + ":", error.what());
+    }
 }
 
-std::size_t GltfAccessors::count(int accessor) const {
-    tinygltf::Accessor const& found = find(accessor);
-    if (found.bufferView >= 0 && found.count > view(found.bufferView).size()) {
-        fail(accessor_name(accessor), "reaches beyond its buffer view: " + std::to_string(found.count) + " elements");
+/// Calls `visit(index, bytes)` for every element, those that a sparse accessor replaces last.
+template <class Visit>
+void GltfAccessors::for_each_element(Accessor const& accessor, Visit const& visit) const {
+    Layout layout{accessor.components, component_size(accessor.component_type, accessor.what), 0};
+    if (accessor.view != none) {
+        std::span<std::byte const> const bytes = view(accessor.view);
+        std::uint64_t const stride =
+            size(list(file_.json, "bufferViews")[static_cast<std::size_t>(accessor.view)], "byteStride", 0);
+        layout.stride = stride ? stride : layout.element_size();
+        std::byte const* const first = elements_of(bytes, accessor.offset, accessor.count, layout, accessor.what);
+        for (std::size_t i = 0; i < accessor.count; ++i) {
+            visit(i, first + i * layout.stride);
+        }
     }
-    if (found.bufferView < 0 && found.count > max_zero_elements) {
-        fail(accessor_name(accessor), "has " + std::to_string(found.count) + " elements but no buffer view");
+    std::uint64_t const count = size(accessor.sparse, "count", 0);
+    if (count == 0) {
+        return;
     }
-    return found.count;
+    Json const& indices = member(accessor.sparse, "indices");
+    Json const& values = member(accessor.sparse, "values");
+    for (auto const& [part, name] : {std::pair(&indices, "indices"), std::pair(&values, "values")}) {
+        if (index(*part, "bufferView") == none) {
+            fail(accessor.what, std::string("is sparse, but its ") + name + " have no buffer view");
+        }
+    }
+    std::uint64_t const type = size(indices, "componentType", 0);
+    if (!is_unsigned(type)) {
+        fail(accessor.what, "has sparse indices of the wrong type");
+    }
+    std::size_t const index_size = component_size(type, accessor.what);
+    std::byte const* const places =
+        elements_of(view(index(indices, "bufferView")), size(indices, "byteOffset", 0), count,
+                    {1, index_size, index_size}, accessor.what + " (sparse indices)");
+    layout.stride = layout.element_size();
+    std::byte const* const replacing = elements_of(view(index(values, "bufferView")), size(values, "byteOffset", 0),
+                                                   count, layout, accessor.what + " (sparse values)");
+    for (std::size_t i = 0; i < count; ++i) {
+        std::uint32_t const place = load_unsigned(type, places + i * index_size);
+        if (place >= accessor.count) {
+            fail(accessor.what, "has the sparse index " + std::to_string(place) + ", but only " +
+                                    std::to_string(accessor.count) + " elements");
+        }
+        visit(place, replacing + i * layout.stride);
+    }
 }
 
-int GltfAccessors::components(int accessor) const {
-    return tinygltf::GetNumComponentsInType(static_cast<std::uint32_t>(find(accessor).type));
+std::size_t GltfAccessors::count(Index accessor) const {
+    Accessor const found = find(accessor);
+    if (found.view != none && found.count > view(found.view).size()) {
+        fail(found.what, "reaches beyond its buffer view: " + std::to_string(found.count) + " elements");
+    }
+    if (found.view == none && found.count > max_zero_elements) {
+        fail(found.what, "has " + std::to_string(found.count) + " elements but no buffer view");
+    }
+    return static_cast<std::size_t>(found.count);
+}
+
+bool GltfAccessors::has_view(Index accessor) const {
+    return find(accessor).view != none;
+}
+
+bool GltfAccessors::is_normalized(Index accessor) const {
+    return find(accessor).normalized;
+}
+
+std::size_t GltfAccessors::components(Index accessor) const {
+    return find(accessor).components;
 }
 
 /// Number of elements, once memory for that many may be allocated.
-std::size_t GltfAccessors::checked_count(int accessor, std::size_t components_wanted, std::size_t bytes_each) const {
-    if (static_cast<std::size_t>(components(accessor)) != components_wanted) {
-        fail(accessor_name(accessor), "has " + std::to_string(components(accessor)) + " components where " +
-                                          std::to_string(components_wanted) + " are needed");
+std::size_t GltfAccessors::checked_count(Index accessor, std::size_t components_wanted, std::size_t bytes_each) const {
+    if (std::size_t const has = components(accessor); has != components_wanted) {
+        fail("accessor " + std::to_string(accessor),
+             "has " + std::to_string(has) + " components where " + std::to_string(components_wanted) + " are needed");
     }
     std::size_t const elements = count(accessor);
     budget_.reserve(elements, bytes_each);
     return elements;
 }
 
-void GltfAccessors::read_floats(int accessor, float* out) const {
-    tinygltf::Accessor const& found = find(accessor);
-    auto const n = static_cast<std::size_t>(components(accessor));
-    if (n > 4 && found.componentType != TINYGLTF_COMPONENT_TYPE_FLOAT) {
-        fail(accessor_name(accessor), "is a matrix of integers");
+void GltfAccessors::read_floats(Index accessor, float* out) const {
+    Accessor const found = find(accessor);
+    std::size_t const n = found.components;
+    if (n > 4 && found.component_type != f32) {
+        fail(found.what, "is a matrix of integers");
     }
-    for_each_element(*this, model_, found, accessor_name(accessor), [&](std::size_t i, std::byte const* from) {
-        convert_element(found.componentType, found.normalized, from, n, out + i * n);
+    for_each_element(found, [&](std::size_t i, std::byte const* from) {
+        convert_element(found.component_type, found.normalized, from, n, out + i * n);
     });
 }
 
-std::vector<std::uint32_t> GltfAccessors::read_integers(int accessor, int components_wanted) const {
-    tinygltf::Accessor const& found = find(accessor);
-    auto const n = static_cast<std::size_t>(components_wanted);
-    if (!is_unsigned(found.componentType)) {
-        fail(accessor_name(accessor), "must hold unsigned integers");
+std::vector<std::uint32_t> GltfAccessors::read_integers(Index accessor, std::size_t n) const {
+    Accessor const found = find(accessor);
+    if (!is_unsigned(found.component_type)) {
+        fail(found.what, "must hold unsigned integers");
     }
-    std::size_t const size = component_size(found.componentType, accessor_name(accessor));
+    std::size_t const each = component_size(found.component_type, found.what);
     std::vector<std::uint32_t> values(checked_count(accessor, n, n * sizeof(std::uint32_t)) * n);
-    for_each_element(*this, model_, found, accessor_name(accessor), [&](std::size_t i, std::byte const* from) {
+    for_each_element(found, [&](std::size_t i, std::byte const* from) {
         for (std::size_t c = 0; c < n; ++c) {
-            values[i * n + c] = load_unsigned(found.componentType, from + c * size);
+            values[i * n + c] = load_unsigned(found.component_type, from + c * each);
         }
     });
     return values;

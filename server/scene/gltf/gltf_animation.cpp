@@ -1,8 +1,6 @@
-#include <tiny_gltf.h>
-
-#include "common/error.h"
 #include "server/scene/gltf/gltf_accessor.h"
 #include "server/scene/gltf/gltf_parts.h"
+#include "server/scene/reading/faults.h"
 
 namespace framelet {
 namespace {
@@ -23,7 +21,7 @@ bool find_property(std::string const& path, AnimationChannel& channel) {
     return true;
 }
 
-std::vector<float> flatten(GltfAccessors const& accessors, int accessor, int components) {
+std::vector<float> flatten(GltfAccessors const& accessors, Index accessor, int components) {
     std::vector<float> values;
     if (components == 3) {
         for (Vec3 const& v : accessors.read<Vec3>(accessor)) {
@@ -37,18 +35,18 @@ std::vector<float> flatten(GltfAccessors const& accessors, int accessor, int com
     return values;
 }
 
-AnimationChannel import_channel(GltfAccessors const& accessors, tinygltf::AnimationSampler const& sampler,
-                                AnimationChannel channel) {
-    channel.interpolation = sampler.interpolation == "STEP"          ? Interpolation::step
-                            : sampler.interpolation == "CUBICSPLINE" ? Interpolation::cubic_spline
-                                                                     : Interpolation::linear;
-    channel.times = accessors.read<float>(sampler.input);
+AnimationChannel import_channel(GltfAccessors const& accessors, Json const& sampler, AnimationChannel channel) {
+    std::string const interpolation = text(sampler, "interpolation");
+    channel.interpolation = interpolation == "STEP"          ? Interpolation::step
+                            : interpolation == "CUBICSPLINE" ? Interpolation::cubic_spline
+                                                             : Interpolation::linear;
+    channel.times = accessors.read<float>(index(sampler, "input"));
     std::size_t const keys = channel.times.size() * (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
     if (channel.property == AnimatedProperty::morph_weights) {
-        channel.values = accessors.read<float>(sampler.output);
+        channel.values = accessors.read<float>(index(sampler, "output"));
         channel.components = keys == 0 ? 1 : static_cast<int>(channel.values.size() / keys);
     } else {
-        channel.values = flatten(accessors, sampler.output, channel.components);
+        channel.values = flatten(accessors, index(sampler, "output"), channel.components);
     }
     if (keys == 0 || channel.components < 1 ||
         channel.values.size() != keys * static_cast<std::size_t>(channel.components)) {
@@ -60,29 +58,37 @@ AnimationChannel import_channel(GltfAccessors const& accessors, tinygltf::Animat
 
 } // namespace
 
-void import_gltf_animations(tinygltf::Model const& model, GltfAccessors const& accessors,
-                            std::vector<Index> const& node_of, Scene& scene) {
-    for (std::size_t i = 0; i < model.animations.size(); ++i) {
-        tinygltf::Animation const& from = model.animations[i];
+void import_gltf_animations(Json const& json, GltfAccessors const& accessors, std::vector<Index> const& node_of,
+                            Scene& scene, std::vector<std::string>& faults) {
+    Json::array_t const& animations = list(json, "animations");
+    for (std::size_t i = 0; i < animations.size(); ++i) {
         AnimationClip clip;
-        clip.name = from.name.empty() ? "clip " + std::to_string(i + 1) : from.name;
-        for (tinygltf::AnimationChannel const& target : from.channels) {
+        clip.name = text(animations[i], "name");
+        if (clip.name.empty()) {
+            clip.name = "clip " + std::to_string(i + 1);
+        }
+        Faults const of_clip("animation '" + clip.name + "'", faults);
+        Json::array_t const& samplers = list(animations[i], "samplers");
+        for (Json const& from : list(animations[i], "channels")) {
+            Json const& target = member(from, "target");
+            Index const node = index(target, "node");
             AnimationChannel channel;
-            bool const node_exists =
-                target.target_node >= 0 && static_cast<std::size_t>(target.target_node) < node_of.size();
-            channel.node = node_exists ? node_of[static_cast<std::size_t>(target.target_node)] : none;
-            if (!find_property(target.target_path, channel)) {
-                scene.warnings.push_back("animation '" + clip.name + "': '" + target.target_path + "' is not animated");
-            } else if (target.sampler < 0 || static_cast<std::size_t>(target.sampler) >= from.samplers.size()) {
-                throw InputError("animation '" + clip.name + "': sampler " + std::to_string(target.sampler) +
-                                 " does not exist");
+            channel.node = node >= 0 && static_cast<std::size_t>(node) < node_of.size()
+                               ? node_of[static_cast<std::size_t>(node)]
+                               : none;
+            std::string const path = text(target, "path");
+            if (path == "pointer") {
+                continue; // of KHR_animation_pointer, which has been noted
+            }
+            if (!find_property(path, channel)) {
+                scene.warnings.push_back("animation '" + clip.name + "': '" + path + "' is not animated");
             } else if (channel.node != none) {
-                try {
-                    clip.channels.push_back(
-                        import_channel(accessors, from.samplers[static_cast<std::size_t>(target.sampler)], channel));
-                } catch (InputError const& error) {
-                    throw InputError("animation '" + clip.name + "': " + error.what());
-                }
+                of_clip.tried(
+                    [&] {
+                        std::size_t const sampler = checked(member(from, "sampler"), samplers.size(), "sampler");
+                        clip.channels.push_back(import_channel(accessors, samplers[sampler], channel));
+                    },
+                    "; what it moves there stands still");
             }
         }
         scene.clips.push_back(std::move(clip));

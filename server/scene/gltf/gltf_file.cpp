@@ -3,46 +3,32 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <cstring>
 #include <functional>
-#include <map>
 #include <optional>
+#include <string_view>
 #include <utility>
 
-#include <nlohmann/json.hpp>
-#include <tiny_gltf.h>
-
-#include "common/error.h"
 #include "server/scene/gltf/gltf_accessor.h"
+#include "server/scene/gltf/gltf_compression.h"
+#include "server/scene/gltf/gltf_container.h"
+#include "server/scene/gltf/gltf_document.h"
+#include "server/scene/gltf/gltf_extensions.h"
+#include "server/scene/reading/faults.h"
 #include "server/scene/reading/file_ending.h"
-#include "server/scene/reading/held_exception.h"
 #include "server/scene/reading/named_file.h"
 
 namespace framelet {
 namespace {
 
-constexpr std::array<std::string_view, 7> known_extensions{
-    "KHR_lights_punctual", "KHR_texture_transform",      "KHR_materials_emissive_strength",
-    "KHR_materials_unlit", "KHR_materials_transmission", "KHR_mesh_quantization",
-    "EXT_texture_webp"};
+constexpr std::string_view data_scheme = "data:";
 
-bool is_known_extension(std::string_view name) {
-    return std::find(known_extensions.begin(), known_extensions.end(), name) != known_extensions.end();
-}
-
-/// JSON nested deeper than this is refused: tinygltf goes through some of it recursively.
-constexpr int max_json_depth = 64;
-constexpr std::size_t longest_media_type = 40;
-/// Bytes of the largest file that is read: tinygltf counts in 32 bits.
-constexpr std::uintmax_t max_file_bytes = 0xffffffffu;
+using Bytes = std::vector<std::byte>;
 
 /// `on_bytes` is called with the number of bytes that have been read since the last call.
-std::vector<unsigned char> read_bytes(RegularFile const& file, std::string const& name,
-                                      std::function<void(std::size_t)> const& on_bytes) {
-    if (file.bytes() > max_file_bytes) {
-        throw InputError("file '" + name + "' is larger than 4 GiB");
-    }
-    std::vector<unsigned char> bytes(static_cast<std::size_t>(file.bytes()));
+Bytes read_bytes(RegularFile const& file, std::string const& name, ImportBudget& budget,
+                 std::function<void(std::size_t)> const& on_bytes) {
+    budget.reserve(file.bytes(), 1); // one file may be named a thousand times
+    Bytes bytes(static_cast<std::size_t>(file.bytes()));
     constexpr std::size_t part = 8 << 20;
     for (std::size_t at = 0; at < bytes.size(); at += part) {
         std::size_t const count = std::min(part, bytes.size() - at);
@@ -54,42 +40,7 @@ std::vector<unsigned char> read_bytes(RegularFile const& file, std::string const
     return bytes;
 }
 
-bool is_binary(std::vector<unsigned char> const& bytes) {
-    return bytes.size() >= 4 && std::memcmp(bytes.data(), "glTF", 4) == 0;
-}
-
-/// The JSON of a .glb after checking the lengths of its header and chunks, or the whole .gltf.
-std::string_view find_json(std::vector<unsigned char> const& bytes) {
-    char const* const text = reinterpret_cast<char const*>(bytes.data());
-    if (!is_binary(bytes)) {
-        return {text, bytes.size()};
-    }
-    auto const word = [&](std::size_t offset) {
-        std::uint32_t value = 0;
-        if (offset + 4 > bytes.size()) {
-            throw InputError("the file is truncated: its header is incomplete");
-        }
-        std::memcpy(&value, bytes.data() + offset, 4);
-        return value;
-    };
-    std::uint64_t const length = word(8);
-    std::uint64_t const json_end = 20 + std::uint64_t(word(12));
-    if (word(4) != 2) {
-        throw InputError("it is binary glTF version " + std::to_string(word(4)) + "; only 2 is supported");
-    }
-    if (length > bytes.size() || json_end > length) {
-        throw InputError("the file is truncated: it has " + std::to_string(bytes.size()) + " of " +
-                         std::to_string(std::max(length, json_end)) + " bytes");
-    }
-    if (json_end < length) {
-        if (json_end + 8 > length || json_end + 8 + word(static_cast<std::size_t>(json_end)) > length) {
-            throw InputError("the file is truncated: its binary chunk reaches beyond the end");
-        }
-    }
-    return {text + 20, static_cast<std::size_t>(json_end - 20)};
-}
-
-std::string decode_uri(std::string const& uri) {
+std::string decode_uri(std::string_view uri) {
     std::string result;
     for (std::size_t i = 0; i < uri.size(); ++i) {
         auto const digit = [](char c) { return std::string_view("0123456789abcdef").find(static_cast<char>(c | 32)); };
@@ -105,269 +56,184 @@ std::string decode_uri(std::string const& uri) {
     return result;
 }
 
-/// The data that tinygltf's file callbacks need.
-struct FileAccess {
-    SceneFolder const& folder;
-    ImportBudget& budget;
-    std::vector<std::string>& warnings;
-    Progress const& progress;
-    std::uint64_t bytes; ///< to be read: of the scene file, then of its buffers
-    std::uint64_t bytes_read = 0;
-    double first_fraction = 0; ///< of reading as a whole, at the first of these bytes
-    double last_fraction; ///< at the last
-    HeldException held = {}; ///< from what tinygltf has called
-    std::map<std::string, std::size_t> buffer_sizes = {}; ///< of buffer files, by path
-    std::map<std::string, std::filesystem::path> found = {}; ///< the files that paths stand for; empty: none
-
-    std::string path_of(std::string const& uri) const { return folder.path().string() + "/" + decode_uri(uri); }
-
-    bool is_buffer(std::string const& path) const { return buffer_sizes.contains(path); }
-
-    /// The file for a path that tinygltf has made of the folder and a name.
-    std::filesystem::path const& find(std::string const& path) {
-        auto const [at, is_new] = found.try_emplace(path);
-        if (is_new) {
-            std::string const name = path.substr(folder.path().string().size() + 1);
-            NamedFile file = find_named_file(folder, is_buffer(path) ? "buffer" : "image", name);
-            at->second = std::move(file.file);
-            if (!file.remark.empty()) {
-                warnings.push_back(std::move(file.remark));
-            }
+Bytes decode_base64(std::string_view text) {
+    constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    Bytes bytes;
+    bytes.reserve(text.size() / 4 * 3);
+    std::uint32_t bits = 0;
+    int count = 0;
+    for (char const c : text.substr(0, text.find_last_not_of('=') + 1)) {
+        std::size_t const value = digits.find(c);
+        if (value == std::string_view::npos) {
+            throw InputError("its base64 is broken");
         }
-        return at->second;
+        bits = bits << 6 | static_cast<std::uint32_t>(value);
+        count += 6;
+        if (count >= 8) {
+            count -= 8;
+            bytes.push_back(static_cast<std::byte>(bits >> count & 255));
+        }
+    }
+    return bytes;
+}
+
+/// The data of a "data:" URI (RFC 2397), whatever media type that says.
+Bytes decode_data_uri(std::string const& uri, ImportBudget& budget) {
+    std::size_t const comma = uri.find(',');
+    if (comma == std::string::npos) {
+        throw InputError("its data URI has no data");
+    }
+    std::string_view const head = std::string_view(uri).substr(0, comma);
+    std::string_view const data = std::string_view(uri).substr(comma + 1);
+    budget.reserve(data.size(), 1);
+    if (head.ends_with(";base64")) {
+        return decode_base64(data);
+    }
+    std::string const plain = decode_uri(data);
+    auto const* const first = reinterpret_cast<std::byte const*>(plain.data());
+    return {first, first + plain.size()};
+}
+
+/// Reads what the buffers of a file say that they are made of.
+class BufferReader {
+public:
+    BufferReader(SceneFolder const& folder, ImportBudget& budget, std::vector<std::string>& remarks,
+                 std::function<void(std::size_t)> on_bytes)
+        : folder_(folder), budget_(budget), remarks_(remarks), on_bytes_(std::move(on_bytes)) {}
+
+    Bytes read(std::string const& uri) const {
+        if (uri.starts_with(data_scheme)) {
+            return decode_data_uri(uri, budget_);
+        }
+        std::string const name = decode_uri(uri);
+        NamedFile const found = find_named_file(folder_, "buffer", name);
+        std::optional<RegularFile> const opened = folder_.open(found.file);
+        if (!opened) {
+            throw InputError(no_named_file(folder_, "buffer", name));
+        }
+        if (!found.remark.empty()) {
+            remarks_.push_back(found.remark);
+        }
+        return read_bytes(*opened, found.file.string(), budget_, on_bytes_);
     }
 
-    /// From now on it is buffers that are read, up to this fraction of reading as a whole.
-    void expect_buffers(double fraction) {
-        bytes = bytes_read = 0;
-        for (auto const& [file, wanted] : buffer_sizes) {
-            bytes += wanted;
-        }
-        first_fraction = std::exchange(last_fraction, fraction);
-    }
-    void report_read(std::size_t more) {
-        bytes_read += more;
-        double const share = std::min(1.0, static_cast<double>(bytes_read) / std::max(1.0, static_cast<double>(bytes)));
-        progress("reading", first_fraction + (last_fraction - first_fraction) * share);
-    }
+private:
+    SceneFolder const& folder_;
+    ImportBudget& budget_;
+    std::vector<std::string>& remarks_;
+    std::function<void(std::size_t)> on_bytes_;
 };
 
-using Json = nlohmann::json;
-
-/// The member, or null where there is none.
-Json const& member(Json const& object, char const* key) {
-    static Json const nothing;
-    return object.is_object() && object.contains(key) ? object[key] : nothing;
-}
-
-void check_required_extensions(Json const& names) {
-    for (Json const& name : names) {
-        if (name.is_string() && !is_known_extension(name.get_ref<std::string const&>())) {
-            throw InputError("it requires the extension " + name.get<std::string>() + ", which is not supported");
-        }
+/// Finds what each buffer is made of. `data`: the binary chunk, which is the first buffer where that has no URI.
+void read_buffers(GltfFile& file, std::optional<std::span<std::byte const>> data, BufferReader const& reader,
+                  std::vector<std::string>& faults) {
+    Json::array_t const& buffers = list(file.json, "buffers");
+    for (std::size_t i = 0; i < buffers.size(); ++i) {
+        Faults const of_buffer(named("buffer", i, ""), faults);
+        std::span<std::byte const>& bytes = file.buffers.emplace_back();
+        std::string const uri = text(buffers[i], "uri");
+        of_buffer.tried(
+            [&] {
+                std::uint64_t const wanted = size(buffers[i], "byteLength", 0);
+                if (!uri.empty()) {
+                    bytes = file.memory.emplace_back(reader.read(uri));
+                } else if (i == 0 && data) {
+                    bytes = *data;
+                } else {
+                    return; // it is wrong only to use it (glTF 2.0 section 3.6.1.1)
+                }
+                if (bytes.size() < wanted) {
+                    of_buffer.note((uri.empty() || uri.starts_with(data_scheme) ? "it" : "'" + uri + "'") + " has " +
+                                   std::to_string(bytes.size()) + " of " + std::to_string(wanted) + " bytes");
+                } else if (wanted > 0) {
+                    bytes = bytes.first(static_cast<std::size_t>(wanted)); // a file may be longer
+                }
+            },
+            "");
     }
 }
 
-/// Throws InputError where an accessor has no buffer view but needs one: tinygltf does not say which accessor it is.
-void check_buffer_views(Json const& accessors, Json const& meshes) {
-    for (std::size_t i = 0; accessors.is_array() && i < accessors.size(); ++i) {
-        Json const& sparse = member(accessors[i], "sparse");
-        for (char const* part : {"indices", "values"}) {
-            if (sparse.is_object() && !member(member(sparse, part), "bufferView").is_number_integer()) {
-                throw InputError("accessor " + std::to_string(i) + " is sparse, but its " + part +
-                                 " have no buffer view");
-            }
-        }
+/// Bytes that the buffer files of a scene say that they have.
+std::uint64_t bytes_beside(Json const& json) {
+    std::uint64_t bytes = 0;
+    for (Json const& buffer : list(json, "buffers")) {
+        std::string const uri = text(buffer, "uri");
+        bool const is_file = !uri.empty() && !uri.starts_with(data_scheme);
+        bytes += is_file ? static_cast<std::uint64_t>(std::max(0.0, number(buffer, "byteLength", 0))) : 0;
     }
-    for (Json const& mesh : meshes) {
-        for (Json const& primitive : member(mesh, "primitives")) {
-            Json const& indices = member(primitive, "indices");
-            if (indices.is_number_unsigned() && accessors.is_array() && indices.get<std::size_t>() < accessors.size() &&
-                !member(accessors[indices.get<std::size_t>()], "bufferView").is_number_integer()) {
-                throw InputError("accessor " + indices.dump() + " holds vertex indices, but has no buffer view");
-            }
-        }
-    }
-}
-
-/// Bytes that are reserved for an object and for a value of the JSON: what tinygltf makes of a material that is "{}",
-/// the largest, and of a number in a list of `extras`, with what is parsed before that.
-constexpr std::uint64_t object_bytes = sizeof(tinygltf::Material);
-constexpr std::uint64_t value_bytes = sizeof(tinygltf::Value) + 3 * sizeof(nlohmann::json);
-
-/// Checks what tinygltf does not, or says less well: the JSON's nesting, its version, extensions and buffer views.
-/// Reserves memory for what will be made of it, and notes how much of each buffer file is wanted: a file may be longer
-/// than the buffer it holds, which tinygltf takes for an error.
-void inspect_json(std::string_view json, FileAccess& access) {
-    constexpr std::array<std::string_view, 5> kept{"buffers", "asset", "extensionsRequired", "accessors", "meshes"};
-    auto const keep = [&](int depth, Json::parse_event_t event, Json& parsed) {
-        if (depth > max_json_depth) {
-            throw InputError("its JSON is nested too deeply");
-        }
-        access.budget.reserve(event == Json::parse_event_t::object_start ? object_bytes
-                              : event == Json::parse_event_t::value      ? value_bytes
-                                                                         : 0,
-                              1);
-        return event != Json::parse_event_t::key || depth != 1 ||
-               std::find(kept.begin(), kept.end(), parsed.get_ref<std::string const&>()) != kept.end();
-    };
-    Json document;
-    try {
-        document = Json::parse(json, keep);
-    } catch (Json::exception const& error) {
-        std::string const why = error.what();
-        throw InputError("its JSON is broken: " +
-                         why.substr(why.find("] ") == std::string::npos ? 0 : why.find("] ") + 2));
-    }
-    Json const& version = member(member(document, "asset"), "version");
-    if (!version.is_string() || version.get_ref<std::string const&>().substr(0, 2) != "2.") {
-        throw InputError(version.is_string()
-                             ? "it is glTF version " + version.get<std::string>() + "; only 2.x is supported"
-                             : "it is not glTF: \"asset\": {\"version\"} is missing");
-    }
-    check_required_extensions(member(document, "extensionsRequired"));
-    check_buffer_views(member(document, "accessors"), member(document, "meshes"));
-    for (Json const& buffer : member(document, "buffers")) {
-        Json const& uri = member(buffer, "uri");
-        Json const& size = member(buffer, "byteLength");
-        if (uri.is_string() && size.is_number_unsigned()) {
-            std::size_t& wanted = access.buffer_sizes[access.path_of(uri.get<std::string>())];
-            wanted = std::max(wanted, size.get<std::size_t>());
-        }
-    }
-}
-
-bool file_exists(std::string const& path, void* user) {
-    // tinygltf also looks into the working directory, which has nothing to do with the scene.
-    auto& access = *static_cast<FileAccess*>(user);
-    std::string const folder = access.folder.path().string() + "/";
-    if (!path.starts_with(folder)) {
-        return false;
-    }
-    bool const is_found = !access.find(path).empty();
-    if (!is_found && access.is_buffer(path) && !access.folder.permits(path)) {
-        throw InputError(SceneFolder::refusal("buffer", path.substr(folder.size())));
-    }
-    return is_found; // of an image that is not `gltf_images` says so
-}
-
-std::string same_path(std::string const& path, void*) {
-    return path;
-}
-
-bool read_whole_file(std::vector<unsigned char>* out, std::string* error, std::string const& path, void* user) {
-    auto& access = *static_cast<FileAccess*>(user);
-    std::filesystem::path const& found = access.find(path);
-    std::optional<RegularFile> const file = access.folder.open(found);
-    if (!file) {
-        *error += "file '" + path + "' cannot be read";
-        return false;
-    }
-    access.budget.reserve(file->bytes(), 1); // one file may be named a thousand times
-    try {
-        *out = read_bytes(*file, found.string(), [&](std::size_t count) {
-            if (!access.held.call([&] { access.report_read(count); })) {
-                throw InputError("it is not wanted any more"); // what is held says why
-            }
-        });
-    } catch (InputError const& problem) {
-        *error += problem.what();
-        return false;
-    }
-    auto const wanted = access.buffer_sizes.find(path);
-    if (wanted != access.buffer_sizes.end() && wanted->second < out->size()) {
-        out->resize(wanted->second);
-    }
-    return true;
-}
-
-/// Keeps the encoded bytes of images that are not in a buffer view; those in one are found through the view, checked.
-bool keep_encoded(tinygltf::Image* image, int, std::string*, std::string*, int, int, unsigned char const* bytes,
-                  int size, void*) {
-    if (image->bufferView < 0 && size > 0) {
-        image->image.assign(bytes, bytes + size);
-    }
-    return true;
-}
-
-void note_unknown_extensions(tinygltf::Model const& model, std::vector<std::string>& warnings) {
-    for (std::string const& name : model.extensionsUsed) {
-        if (!is_known_extension(name)) {
-            warnings.push_back("extension " + name + " is not supported and passed over");
-        }
-    }
+    return bytes;
 }
 
 } // namespace
 
-std::unique_ptr<tinygltf::Model> read_gltf(std::filesystem::path const& file, SceneFolder const& folder,
-                                           ImportBudget& budget, std::vector<std::string>& warnings,
-                                           Progress const& progress) {
-    constexpr double all_read = 0.9; // then tinygltf takes a while
-    double const file_read = lower_extension(file) == ".glb" ? all_read : 0.3; // what else is large lies beside a .gltf
+std::unique_ptr<GltfFile> read_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
+                                    std::vector<std::string>& remarks, std::vector<std::string>& faults,
+                                    Progress const& progress) {
+    // What else is large lies beside a .gltf.
+    double const file_read = lower_extension(file) == ".glb" ? 0.9 : 0.3;
     RegularFile const opened(file);
     if (!opened) {
         throw InputError("it cannot be read: " + opened.problem());
     }
-    FileAccess access{folder, budget, warnings, progress, opened.bytes(), 0, 0, file_read};
-    budget.reserve(access.bytes, 1);
-    std::vector<unsigned char> const bytes =
-        read_bytes(opened, file.string(), [&access](std::size_t count) { access.report_read(count); });
-    std::string const base = folder.path().string();
-    std::string_view const json = find_json(bytes);
-    inspect_json(json, access);
-    access.expect_buffers(all_read);
-
-    tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(keep_encoded, nullptr);
-    loader.SetFsCallbacks({file_exists, same_path, read_whole_file, nullptr, &access});
-    auto model = std::make_unique<tinygltf::Model>();
-    std::string error;
-    std::string remarks;
-    auto const size = static_cast<unsigned>(bytes.size());
-    bool loaded = false;
-    try {
-        loaded = is_binary(bytes) ? loader.LoadBinaryFromMemory(model.get(), &error, &remarks, bytes.data(), size, base)
-                                  : loader.LoadASCIIFromString(model.get(), &error, &remarks, json.data(), size, base);
-    } catch (std::bad_alloc const&) {
-        throw; // which says nothing of the file
-    } catch (std::exception const& problem) {
-        error = problem.what();
+    auto expected = static_cast<double>(opened.bytes());
+    double read = 0, from = 0, to = file_read;
+    auto const on_bytes = [&](std::size_t more) {
+        read += static_cast<double>(more);
+        progress("reading", from + (to - from) * std::min(1.0, read / std::max(1.0, expected)));
+    };
+    auto out = std::make_unique<GltfFile>();
+    std::span<std::byte const> const bytes =
+        out->memory.emplace_back(read_bytes(opened, file.string(), budget, on_bytes));
+    GltfContainer const container = open_gltf_container(bytes);
+    out->json = parse_gltf_json(container.json, budget);
+    if (container.is_cut) {
+        faults.emplace_back("the file is truncated: it ends before what is in it does");
     }
-    access.held.rethrow();
-    if (!loaded) {
-        throw InputError(error.empty() ? "it is not valid glTF" : error);
-    }
-    note_unknown_extensions(*model, warnings);
-    return model;
+    out->lacks = note_extensions(out->json, remarks);
+    expected = static_cast<double>(bytes_beside(out->json));
+    read = 0;
+    from = std::exchange(to, 1);
+    read_buffers(*out, container.data, BufferReader(folder, budget, remarks, on_bytes), faults);
+    decompress_views(*out, budget, faults);
+    return out;
 }
 
-std::vector<EncodedImage> gltf_images(tinygltf::Model const& model, GltfAccessors const& accessors,
-                                      SceneFolder const& folder) {
-    std::vector<EncodedImage> images;
-    for (std::size_t i = 0; i < model.images.size(); ++i) {
-        tinygltf::Image const& image = model.images[i];
-        bool const embedded = image.bufferView >= 0;
-        std::span<std::byte const> const bytes =
-            embedded ? accessors.view(image.bufferView) : std::as_bytes(std::span(image.image));
-        bool const in_file = image.uri.empty() || image.uri.starts_with("data:");
-        std::string name = in_file ? image.name : decode_uri(image.uri);
-        if (name.empty()) {
-            name = std::to_string(i);
+std::vector<EncodedImage> gltf_images(GltfFile& file, GltfAccessors const& accessors, SceneFolder const& folder,
+                                      ImportBudget& budget, std::vector<std::string>& remarks) {
+    std::vector<EncodedImage> out;
+    Json::array_t const& images = list(file.json, "images");
+    for (std::size_t i = 0; i < images.size(); ++i) {
+        std::string const uri = text(images[i], "uri");
+        bool const in_file = uri.empty() || uri.starts_with(data_scheme);
+        EncodedImage image;
+        image.name = in_file ? text(images[i], "name") : decode_uri(uri);
+        if (image.name.empty()) {
+            image.name = std::to_string(i);
         }
-        if (image.uri.empty()) { // OpenImageIO chooses the decoder by the name's ending
-            name += image.mimeType == "image/jpeg" ? ".jpg" : image.mimeType == "image/webp" ? ".webp" : ".png";
+        std::string const what = "image '" + image.name + "'";
+        try {
+            if (!in_file) {
+                NamedFile found = find_named_file(folder, "image", image.name);
+                if (found.file.empty()) {
+                    image.problem = no_named_file(folder, "image", image.name);
+                }
+                if (!found.remark.empty()) {
+                    remarks.push_back(std::move(found.remark));
+                }
+                image.file = std::move(found.file);
+            } else if (!uri.empty()) {
+                image.bytes = file.memory.emplace_back(decode_data_uri(uri, budget));
+            } else if (index(images[i], "bufferView") != none) {
+                image.bytes = accessors.view(index(images[i], "bufferView"));
+            }
+        } catch (SceneTooLarge const&) {
+            throw;
+        } catch (InputError const& error) {
+            image.problem = what + ": " + error.what();
         }
-        std::string problem;
-        if (!in_file && bytes.empty()) {
-            problem = no_named_file(folder, "image", name);
-        } else if (image.uri.starts_with("data:") && bytes.empty()) {
-            problem = "image '" + name + "' holds data of a kind that is not supported: " +
-                      image.uri.substr(0, std::min(image.uri.find_first_of(";,"), longest_media_type));
-        }
-        images.push_back({std::move(name), bytes, {}, nullptr, std::move(problem)});
+        out.push_back(std::move(image));
     }
-    return images;
+    return out;
 }
 
 } // namespace framelet

@@ -13,9 +13,11 @@
 
 namespace framelet {
 
-/// Imports the file's default scene. Throws before it reads meshes and pictures where the file lacks a clip of a name
-/// in `needed_clips`.
+/// Imports the scene of that name or number, the file's default scene where `wanted_scene` is empty. Throws InputError
+/// that lists the file's scenes where it is not among them. Throws before it reads meshes and pictures where the file
+/// lacks a clip of a name in `needed_clips`.
 Scene import_gltf(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
-                  std::span<std::string const> needed_clips, Progress const& progress);
+                  std::string const& wanted_scene, std::span<std::string const> needed_clips, bool is_checked,
+                  Progress const& progress);
 
 } // namespace framelet

@@ -1,120 +1,126 @@
 #include "server/scene/gltf/gltf_parts.h"
-#include "server/scene/gltf/gltf_value.h"
+#include "server/scene/reading/faults.h"
 
 namespace framelet {
 namespace {
 
-Wrap wrap_of(int mode) {
-    switch (mode) {
-    case TINYGLTF_TEXTURE_WRAP_CLAMP_TO_EDGE:
-        return Wrap::clamp;
-    case TINYGLTF_TEXTURE_WRAP_MIRRORED_REPEAT:
-        return Wrap::mirror;
-    default:
-        return Wrap::repeat;
-    }
+/// Numbers of the specification (glTF 2.0 section 5.26).
+constexpr int clamp_to_edge = 33071, mirrored_repeat = 33648, nearest = 9728;
+
+Wrap wrap_of(Index mode) {
+    return mode == clamp_to_edge ? Wrap::clamp : mode == mirrored_repeat ? Wrap::mirror : Wrap::repeat;
 }
 
-Texture make_texture(tinygltf::Model const& model, tinygltf::Texture const& from) {
+Texture make_texture(Json const& json, Json const& from, Faults const& faults) {
     Texture texture;
-    texture.image = from.source;
-    if (tinygltf::Value const* webp = find_extension(from.extensions, "EXT_texture_webp")) {
-        texture.image = integer(*webp, "source", texture.image);
+    Json const& webp = member(extension(from, "EXT_texture_webp"), "source");
+    Json const& source = webp.is_null() ? member(from, "source") : webp;
+    if (!source.is_null()) {
+        faults.tried([&] { texture.image = static_cast<Index>(checked(source, list(json, "images").size(), "image")); },
+                     "; things show without it");
     }
-    if (texture.image < 0 || static_cast<std::size_t>(texture.image) >= model.images.size()) {
-        texture.image = none;
-    }
-    if (from.sampler >= 0 && static_cast<std::size_t>(from.sampler) < model.samplers.size()) {
-        tinygltf::Sampler const& sampler = model.samplers[static_cast<std::size_t>(from.sampler)];
-        texture.wrap_u = wrap_of(sampler.wrapS);
-        texture.wrap_v = wrap_of(sampler.wrapT);
-        texture.nearest = sampler.magFilter == TINYGLTF_TEXTURE_FILTER_NEAREST;
+    Json::array_t const& samplers = list(json, "samplers");
+    Index const sampler = index(from, "sampler");
+    if (sampler >= 0 && static_cast<std::size_t>(sampler) < samplers.size()) {
+        Json const& how = samplers[static_cast<std::size_t>(sampler)];
+        texture.wrap_u = wrap_of(index(how, "wrapS"));
+        texture.wrap_v = wrap_of(index(how, "wrapT"));
+        texture.nearest = index(how, "magFilter") == nearest;
     }
     return texture;
 }
 
-TextureUse make_use(Scene& scene, int index, int uv_set, tinygltf::Value const* transform) {
-    TextureUse use;
-    if (index < 0) {
+/// Reads the parts of one material. What cannot be read keeps its default.
+class MaterialReader {
+public:
+    MaterialReader(std::size_t textures, Faults faults) : textures_(textures), faults_(std::move(faults)) {}
+
+    template <typename T>
+    void read(Json const& object, char const* key, T& out) const {
+        faults_.tried([&] { read_numbers(object, key, out); }, "; its usual value is taken");
+    }
+
+    TextureUse use(Json const& object, char const* key) const {
+        Json const& info = member(object, key);
+        TextureUse use;
+        if (!info.is_object() ||
+            !faults_.tried(
+                [&] { use.texture = static_cast<Index>(checked(member(info, "index"), textures_, "texture")); },
+                "; it is shown without it")) {
+            return use;
+        }
+        Json const& transform = extension(info, "KHR_texture_transform");
+        read(transform, "offset", use.offset);
+        read(transform, "scale", use.scale);
+        use.rotation = static_cast<float>(number(transform, "rotation", 0));
+        Index const set = index(transform, "texCoord") == none ? index(info, "texCoord") : index(transform, "texCoord");
+        if (set > 1) {
+            faults_.note("texture coordinate set " + std::to_string(set) + " is not supported; set 0 is used");
+        }
+        use.uv_set = set == 1 ? 1 : 0;
         return use;
     }
-    if (static_cast<std::size_t>(index) >= scene.textures.size()) {
-        scene.warnings.push_back("texture " + std::to_string(index) + " does not exist; shown without it");
-        return use;
-    }
-    use.texture = index;
-    use.uv_set = uv_set;
-    if (transform) {
-        use.offset = vec2(*transform, "offset", use.offset);
-        use.scale = vec2(*transform, "scale", use.scale);
-        use.rotation = number(*transform, "rotation", 0);
-        use.uv_set = integer(*transform, "texCoord", uv_set);
-    }
-    if (use.uv_set < 0 || use.uv_set > 1) {
-        scene.warnings.push_back("texture coordinate set " + std::to_string(use.uv_set) +
-                                 " is not supported; set 0 is used");
-        use.uv_set = 0;
-    }
-    return use;
+
+private:
+    std::size_t textures_;
+    Faults faults_;
+};
+
+/// Takes what specular-glossiness says of diffuse colours, where metallic-roughness says nothing of them. What it says
+/// of highlights has no place here.
+void read_specular_glossiness(Json const& from, MaterialReader const& reader, Material& material) {
+    reader.read(from, "diffuseFactor", material.base_color);
+    material.base_color_texture = reader.use(from, "diffuseTexture");
+    material.metallic = 0;
+    bool const varies = member(from, "specularGlossinessTexture").is_object(); // which is not read
+    material.roughness = varies ? 1.0f : 1 - static_cast<float>(number(from, "glossinessFactor", 1));
 }
 
-template <class Info>
-TextureUse make_use(Scene& scene, Info const& info) {
-    return make_use(scene, info.index, info.texCoord, find_extension(info.extensions, "KHR_texture_transform"));
-}
-
-void add_transmission(Scene& scene, tinygltf::Value const& extension, Material& material) {
-    material.transmission = number(extension, "transmissionFactor", 0);
-    tinygltf::Value const& texture = extension.Get("transmissionTexture");
-    if (texture.IsObject()) {
-        tinygltf::Value const& extensions = texture.Get("extensions");
-        tinygltf::Value const* const transform =
-            extensions.Has("KHR_texture_transform") && extensions.Get("KHR_texture_transform").IsObject()
-                ? &extensions.Get("KHR_texture_transform")
-                : nullptr;
-        material.transmission_texture =
-            make_use(scene, integer(texture, "index", none), integer(texture, "texCoord", 0), transform);
-    }
-}
-
-Material make_material(Scene& scene, tinygltf::Material const& from) {
+Material make_material(Json const& from, MaterialReader const& reader) {
     Material material;
-    tinygltf::PbrMetallicRoughness const& pbr = from.pbrMetallicRoughness;
-    material.name = from.name;
-    material.base_color = vec4(pbr.baseColorFactor, material.base_color);
-    material.metallic = static_cast<float>(pbr.metallicFactor);
-    material.roughness = static_cast<float>(pbr.roughnessFactor);
-    material.emissive = vec3(from.emissiveFactor, material.emissive);
-    material.normal_scale = static_cast<float>(from.normalTexture.scale);
-    material.occlusion_strength = static_cast<float>(from.occlusionTexture.strength);
-    material.alpha_cutoff = static_cast<float>(from.alphaCutoff);
-    material.alpha_mode = from.alphaMode == "MASK"    ? AlphaMode::mask
-                          : from.alphaMode == "BLEND" ? AlphaMode::blend
-                                                      : AlphaMode::opaque;
-    material.double_sided = from.doubleSided;
-    material.base_color_texture = make_use(scene, pbr.baseColorTexture);
-    material.metallic_roughness_texture = make_use(scene, pbr.metallicRoughnessTexture);
-    material.normal_texture = make_use(scene, from.normalTexture);
-    material.occlusion_texture = make_use(scene, from.occlusionTexture);
-    material.emissive_texture = make_use(scene, from.emissiveTexture);
-    material.unlit = from.extensions.contains("KHR_materials_unlit");
-    if (auto const* strength = find_extension(from.extensions, "KHR_materials_emissive_strength")) {
-        material.emissive *= number(*strength, "emissiveStrength", 1);
+    Json const& pbr = member(from, "pbrMetallicRoughness");
+    auto const factor = [](Json const& object, char const* key, float otherwise) {
+        return static_cast<float>(number(object, key, otherwise));
+    };
+    material.name = text(from, "name");
+    reader.read(pbr, "baseColorFactor", material.base_color);
+    material.metallic = factor(pbr, "metallicFactor", material.metallic);
+    material.roughness = factor(pbr, "roughnessFactor", material.roughness);
+    reader.read(from, "emissiveFactor", material.emissive);
+    material.normal_scale = factor(member(from, "normalTexture"), "scale", material.normal_scale);
+    material.occlusion_strength = factor(member(from, "occlusionTexture"), "strength", material.occlusion_strength);
+    material.alpha_cutoff = factor(from, "alphaCutoff", material.alpha_cutoff);
+    std::string const alpha_mode = text(from, "alphaMode");
+    material.alpha_mode = alpha_mode == "MASK"    ? AlphaMode::mask
+                          : alpha_mode == "BLEND" ? AlphaMode::blend
+                                                  : AlphaMode::opaque;
+    material.double_sided = flag(from, "doubleSided", false);
+    material.base_color_texture = reader.use(pbr, "baseColorTexture");
+    material.metallic_roughness_texture = reader.use(pbr, "metallicRoughnessTexture");
+    Json const& glossy = extension(from, "KHR_materials_pbrSpecularGlossiness");
+    if (!glossy.is_null() && member(pbr, "baseColorFactor").is_null() && member(pbr, "baseColorTexture").is_null()) {
+        read_specular_glossiness(glossy, reader, material);
     }
-    if (auto const* transmission = find_extension(from.extensions, "KHR_materials_transmission")) {
-        add_transmission(scene, *transmission, material);
-    }
+    material.normal_texture = reader.use(from, "normalTexture");
+    material.occlusion_texture = reader.use(from, "occlusionTexture");
+    material.emissive_texture = reader.use(from, "emissiveTexture");
+    material.unlit = !extension(from, "KHR_materials_unlit").is_null();
+    material.emissive *= factor(extension(from, "KHR_materials_emissive_strength"), "emissiveStrength", 1);
+    Json const& transmission = extension(from, "KHR_materials_transmission");
+    material.transmission = factor(transmission, "transmissionFactor", material.transmission);
+    material.transmission_texture = reader.use(transmission, "transmissionTexture");
     return material;
 }
 
 } // namespace
 
-void import_gltf_materials(tinygltf::Model const& model, Scene& scene) {
-    for (tinygltf::Texture const& texture : model.textures) {
-        scene.textures.push_back(make_texture(model, texture));
+void import_gltf_materials(Json const& json, Scene& scene, std::vector<std::string>& faults) {
+    for (Json const& texture : list(json, "textures")) {
+        scene.textures.push_back(make_texture(json, texture, {named("texture", scene.textures.size(), ""), faults}));
     }
-    for (tinygltf::Material const& material : model.materials) {
-        scene.materials.push_back(make_material(scene, material));
+    for (Json const& material : list(json, "materials")) {
+        std::string const what = named("material", scene.materials.size(), text(material, "name"));
+        scene.materials.push_back(make_material(material, {scene.textures.size(), {what, faults}}));
     }
 }
 

@@ -1,29 +1,31 @@
 #include <algorithm>
-#include <map>
 #include <numeric>
+#include <optional>
 #include <utility>
 
-#include <tiny_gltf.h>
-
-#include "common/error.h"
 #include "server/scene/gltf/gltf_accessor.h"
+#include "server/scene/gltf/gltf_compression.h"
 #include "server/scene/gltf/gltf_parts.h"
+#include "server/scene/reading/faults.h"
 
 namespace framelet {
 namespace {
 
+/// Modes of a primitive (glTF 2.0 section 5.24.4); those below are points and lines.
+constexpr std::uint64_t triangles_mode = 4, strip_mode = 5, fan_mode = 6;
+
 /// Turns the vertex order of triangles, strips and fans into a triangle list (glTF 2.0 section 3.7.2.1).
-std::vector<std::array<std::uint32_t, 3>> make_triangles(std::vector<std::uint32_t> const& order, int mode) {
+std::vector<std::array<std::uint32_t, 3>> make_triangles(std::vector<std::uint32_t> const& order, std::uint64_t mode) {
     std::vector<std::array<std::uint32_t, 3>> triangles;
     std::size_t const n = order.size();
-    if (mode == TINYGLTF_MODE_TRIANGLES) {
+    if (mode == triangles_mode) {
         triangles.reserve(n / 3);
         for (std::size_t i = 0; i + 2 < n; i += 3) {
             triangles.push_back({order[i], order[i + 1], order[i + 2]});
         }
     } else {
         for (std::size_t i = 0; i + 2 < n; ++i) {
-            if (mode == TINYGLTF_MODE_TRIANGLE_FAN) {
+            if (mode == fan_mode) {
                 triangles.push_back({order[i + 1], order[i + 2], order[0]});
             } else {
                 triangles.push_back({order[i], order[i + 1 + i % 2], order[i + 2 - i % 2]});
@@ -35,29 +37,53 @@ std::vector<std::array<std::uint32_t, 3>> make_triangles(std::vector<std::uint32
 
 struct PrimitiveReader {
     GltfAccessors const& accessors;
-    std::map<std::string, int> const& attributes;
+    Json const& attributes;
     std::size_t vertex_count;
+    DracoMesh const* draco = nullptr; ///< has some of the attributes, where there is one
 
-    bool has(std::string const& name) const { return attributes.contains(name); }
+    bool is_in_draco(std::string const& name) const { return draco && draco->has(name); }
+
+    bool has(std::string const& name) const { return !member(attributes, name.c_str()).is_null(); }
 
     /// The attribute's accessor; throws where its length is not the number of vertices.
-    int accessor(std::string const& name) const {
-        int const index = attributes.at(name);
-        std::size_t const count = accessors.count(index);
+    Index accessor(std::string const& name) const {
+        Index const place = index(attributes, name.c_str());
+        std::size_t const count = accessors.count(place);
         if (count != vertex_count) {
             throw InputError("attribute " + name + " has " + std::to_string(count) + " entries for " +
                              std::to_string(vertex_count) + " vertices");
         }
-        return index;
+        return place;
     }
 
     template <class T>
     std::vector<T> read(std::string const& name) const {
+        constexpr std::size_t width = sizeof(T) / sizeof(float);
+        if (has(name) && is_in_draco(name)) {
+            accessors.budget().reserve(vertex_count, sizeof(T));
+            std::vector<T> values(vertex_count);
+            draco->read(name, accessors.is_normalized(index(attributes, name.c_str())), width,
+                        reinterpret_cast<float*>(values.data()));
+            return values;
+        }
         return has(name) ? accessors.read<T>(accessor(name)) : std::vector<T>();
     }
 
+    std::size_t components(std::string const& name) const {
+        return is_in_draco(name) ? draco->components(name) : accessors.components(accessor(name));
+    }
+
+    std::vector<std::uint32_t> read_joints(std::string const& name) const {
+        constexpr std::size_t width = 4;
+        if (!is_in_draco(name)) {
+            return accessors.read_integers(accessor(name), width);
+        }
+        accessors.budget().reserve(vertex_count, width * sizeof(std::uint32_t));
+        return draco->read_integers(name, width);
+    }
+
     std::vector<Vec4> read_colors() const {
-        if (!has("COLOR_0") || accessors.components(accessor("COLOR_0")) == 4) {
+        if (!has("COLOR_0") || components("COLOR_0") == 4) {
             return read<Vec4>("COLOR_0");
         }
         std::vector<Vec4> colors;
@@ -76,7 +102,7 @@ struct PrimitiveReader {
             if (!has("JOINTS_" + suffix) || !has("WEIGHTS_" + suffix)) {
                 break;
             }
-            auto const joints = accessors.read_integers(accessor("JOINTS_" + suffix), 4);
+            auto const joints = read_joints("JOINTS_" + suffix);
             auto const weights = read<Vec4>("WEIGHTS_" + suffix);
             for (std::size_t i = 0; i < vertex_count; ++i) {
                 for (int k = 0; k < 4; ++k) {
@@ -103,94 +129,130 @@ struct PrimitiveReader {
     }
 };
 
-Primitive import_primitive(GltfAccessors const& accessors, tinygltf::Primitive const& from) {
-    auto const position = from.attributes.find("POSITION");
-    PrimitiveReader const reader{accessors, from.attributes, accessors.count(position->second)};
+/// The mesh that has some of a primitive's attributes (KHR_draco_mesh_compression); nothing where there is none.
+std::optional<DracoMesh> draco_mesh(GltfAccessors const& accessors, Json const& primitive) {
+    Json const& compressed = extension(primitive, "KHR_draco_mesh_compression");
+    return compressed.is_null()
+               ? std::nullopt
+               : std::optional<DracoMesh>(std::in_place, accessors.view(index(compressed, "bufferView")),
+                                          member(compressed, "attributes"));
+}
+
+/// The vertices of a primitive, in the order in which its triangles use them.
+std::vector<std::uint32_t> read_order(GltfAccessors const& accessors, Json const& from, DracoMesh const* draco,
+                                      std::size_t vertex_count) {
+    std::vector<std::uint32_t> order;
+    Index const indices = index(from, "indices");
+    if (draco) {
+        order = draco->indices();
+    } else if (indices == none) {
+        order.resize(vertex_count);
+        std::iota(order.begin(), order.end(), 0u);
+    } else if (accessors.has_view(indices)) {
+        order = accessors.read_integers(indices, 1);
+    } else {
+        throw InputError("accessor " + std::to_string(indices) + " holds vertex indices, but has no buffer view");
+    }
+    for (std::uint32_t const vertex : order) {
+        if (vertex >= vertex_count) {
+            throw InputError("vertex index " + std::to_string(vertex) + " is out of range: there are " +
+                             std::to_string(vertex_count) + " vertices");
+        }
+    }
+    return order;
+}
+
+Primitive import_primitive(GltfAccessors const& accessors, Json const& from) {
+    Json const& attributes = member(from, "attributes");
+    std::optional<DracoMesh> const unpacked = draco_mesh(accessors, from);
+    DracoMesh const* const draco = unpacked ? &*unpacked : nullptr;
+    PrimitiveReader const reader{accessors, attributes,
+                                 draco ? draco->vertex_count() : accessors.count(index(attributes, "POSITION")), draco};
     Primitive primitive;
-    primitive.material = from.material;
+    primitive.material = index(from, "material");
     primitive.positions = reader.read<Vec3>("POSITION");
     primitive.normals = reader.read<Vec3>("NORMAL");
     primitive.tangents = reader.read<Vec4>("TANGENT");
     primitive.uv = {reader.read<Vec2>("TEXCOORD_0"), reader.read<Vec2>("TEXCOORD_1")};
     primitive.colors = reader.read_colors();
     primitive.influences = reader.read_influences();
-    for (std::map<std::string, int> const& target : from.targets) {
+    for (Json const& target : list(from, "targets")) {
         PrimitiveReader const offsets{accessors, target, reader.vertex_count};
         primitive.morph_targets.push_back(
             {offsets.read<Vec3>("POSITION"), offsets.read<Vec3>("NORMAL"), offsets.read<Vec3>("TANGENT")});
     }
-    std::vector<std::uint32_t> order;
-    if (from.indices >= 0) {
-        order = accessors.read_integers(from.indices, 1);
-        for (std::uint32_t const index : order) {
-            if (index >= reader.vertex_count) {
-                throw InputError("vertex index " + std::to_string(index) + " is out of range: there are " +
-                                 std::to_string(reader.vertex_count) + " vertices");
-            }
-        }
-    } else {
-        order.resize(reader.vertex_count);
-        std::iota(order.begin(), order.end(), 0u);
-    }
-    primitive.triangles = make_triangles(order, from.mode);
+    // What Draco has decoded is a list of triangles, whatever it was.
+    primitive.triangles = make_triangles(read_order(accessors, from, draco, reader.vertex_count),
+                                         draco ? triangles_mode : size(from, "mode", triangles_mode));
     return primitive;
-}
-
-bool is_surface(int mode) {
-    return mode == TINYGLTF_MODE_TRIANGLES || mode == TINYGLTF_MODE_TRIANGLE_STRIP ||
-           mode == TINYGLTF_MODE_TRIANGLE_FAN;
 }
 
 } // namespace
 
-void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
+void reserve_gltf_mesh(Json const& json, GltfAccessors const& accessors, std::size_t index_of_mesh,
                        ImportBudget& budget) {
-    for (tinygltf::Primitive const& primitive : model.meshes[index].primitives) {
-        auto const position = primitive.attributes.find("POSITION");
-        if (!is_surface(primitive.mode) || position == primitive.attributes.end()) {
-            continue;
-        }
-        std::size_t vertex_bytes = 0;
-        auto const add = [&](std::map<std::string, int> const& attributes) {
-            for (auto const& [name, accessor] : attributes) {
-                vertex_bytes += static_cast<std::size_t>(std::max(accessors.components(accessor), 0)) * sizeof(float);
-            }
-        };
-        add(primitive.attributes);
-        std::for_each(primitive.targets.begin(), primitive.targets.end(), add);
-        std::size_t const vertices = accessors.count(position->second);
-        std::size_t const corners = primitive.indices >= 0 ? accessors.count(primitive.indices) : vertices;
-        budget.reserve(vertices, vertex_bytes);
-        budget.reserve(corners, sizeof(std::uint32_t));
-        if (!primitive.attributes.contains("NORMAL")) { // flat shading gives every corner its own vertex
-            budget.reserve(corners, vertex_bytes + sizeof(Vec3));
-        }
+    for (Json const& primitive : list(list(json, "meshes")[index_of_mesh], "primitives")) {
+        Json const& attributes = member(primitive, "attributes");
+        std::vector<std::string> said_later;
+        Faults("", said_later)
+            .tried(
+                [&] {
+                    std::size_t vertex_bytes = 0;
+                    auto const add = [&](Json const& of) {
+                        for (Json const& accessor : of) {
+                            vertex_bytes += accessors.components(index_of(accessor)) * sizeof(float);
+                        }
+                    };
+                    add(attributes);
+                    std::ranges::for_each(list(primitive, "targets"), add);
+                    std::size_t const vertices = accessors.count(index(attributes, "POSITION"));
+                    Index const indices = index(primitive, "indices");
+                    std::size_t const corners = indices == none ? vertices : accessors.count(indices);
+                    budget.reserve(vertices, vertex_bytes);
+                    budget.reserve(corners, sizeof(std::uint32_t));
+                    if (member(attributes, "NORMAL").is_null()) { // flat shading gives every corner its own vertex
+                        budget.reserve(corners, vertex_bytes + sizeof(Vec3));
+                    }
+                },
+                "");
     }
 }
 
-Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
-                      std::vector<std::string>& warnings) {
-    tinygltf::Mesh const& from = model.meshes[index];
-    std::string const what = "mesh " + std::to_string(index) + (from.name.empty() ? "" : " '" + from.name + "'");
-    Mesh mesh;
-    mesh.name = from.name;
-    for (double const weight : from.weights) {
-        mesh.morph_weights.push_back(static_cast<float>(weight));
+GltfMesh import_gltf_mesh(Json const& json, GltfAccessors const& accessors, std::size_t index_of_mesh) {
+    Json const& from = list(json, "meshes")[index_of_mesh];
+    std::size_t const materials = list(json, "materials").size();
+    GltfMesh out;
+    out.mesh.name = text(from, "name");
+    out.mesh.morph_weights = floats(from, "weights");
+    std::string const what = named("mesh", index_of_mesh, out.mesh.name);
+    Faults const faults(what, out.faults);
+    if (list(from, "primitives").empty()) {
+        out.faults.push_back(what + " has no primitives");
     }
-    for (tinygltf::Primitive const& primitive : from.primitives) {
-        if (!is_surface(primitive.mode)) {
-            warnings.push_back(what + ": points and lines are not shown");
-        } else if (!primitive.attributes.contains("POSITION")) {
-            warnings.push_back(what + ": a primitive without positions is not shown");
-        } else {
-            try {
-                mesh.primitives.push_back(import_primitive(accessors, primitive));
-            } catch (InputError const& error) {
-                throw InputError(what + ": " + error.what());
-            }
+    for (Json const& primitive : list(from, "primitives")) {
+        faults.tried(
+            [&] {
+                std::uint64_t const mode = size(primitive, "mode", triangles_mode);
+                if (mode > fan_mode) {
+                    throw InputError("there is no mode " + std::to_string(mode) + " of primitives");
+                }
+                if (mode < triangles_mode) {
+                    out.remarks.push_back(what + ": points and lines are not shown");
+                } else if (member(member(primitive, "attributes"), "POSITION").is_null()) {
+                    out.remarks.push_back(what + ": a primitive without positions is not shown");
+                } else {
+                    out.mesh.primitives.push_back(import_primitive(accessors, primitive));
+                }
+            },
+            "; that part is not shown");
+    }
+    for (Primitive& primitive : out.mesh.primitives) {
+        if (primitive.material != none && static_cast<std::size_t>(primitive.material) >= materials) {
+            faults.note("material " + std::to_string(primitive.material) + " does not exist; it is shown without it");
+            primitive.material = none;
         }
     }
-    return mesh;
+    return out;
 }
 
 } // namespace framelet

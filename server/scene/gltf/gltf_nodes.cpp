@@ -1,166 +1,296 @@
-#include <glm/gtc/type_ptr.hpp>
+#include <algorithm>
+#include <utility>
 
-#include "common/error.h"
 #include "server/scene/gltf/gltf_accessor.h"
 #include "server/scene/gltf/gltf_parts.h"
-#include "server/scene/gltf/gltf_value.h"
+#include "server/scene/reading/faults.h"
 
 namespace framelet {
 namespace {
 
-/// `index` where it names one of `count` things, else an InputError.
-std::size_t checked(int index, std::size_t count, std::string const& what) {
-    if (index < 0 || static_cast<std::size_t>(index) >= count) {
-        throw InputError(what + " " + std::to_string(index) + " does not exist");
-    }
-    return static_cast<std::size_t>(index);
+/// A node that is to be imported.
+struct Pending {
+    std::size_t node; ///< in the file
+    Index parent; ///< likewise; `none` for a root
+    bool hidden; ///< by KHR_node_visibility of a node above it
+};
+
+std::string name_of(Json const& json, std::size_t node) {
+    return named("node", node, text(list(json, "nodes")[node], "name"));
 }
 
-/// The nodes that the default scene starts from; all that nobody has as a child where the file has no scene.
-std::vector<int> root_nodes(tinygltf::Model const& model) {
-    if (!model.scenes.empty()) {
-        int const index = model.defaultScene < 0 ? 0 : model.defaultScene;
-        return model.scenes[checked(index, model.scenes.size(), "scene")].nodes;
+/// Those of the listed nodes that exist.
+std::vector<std::size_t> existing(Json::array_t const& listed, std::size_t count, Faults const& faults) {
+    std::vector<std::size_t> out;
+    for (Json const& node : listed) {
+        faults.tried([&] { out.push_back(checked(node, count, "node")); }, "");
     }
-    std::vector<bool> is_child(model.nodes.size());
-    for (tinygltf::Node const& node : model.nodes) {
-        for (int const child : node.children) {
-            is_child[checked(child, model.nodes.size(), "node")] = true;
+    return out;
+}
+
+/// All nodes that nobody has as a child.
+std::vector<std::size_t> parentless(Json const& json) {
+    Json::array_t const& nodes = list(json, "nodes");
+    std::vector<bool> is_child(nodes.size());
+    std::vector<std::string> said_later;
+    for (Json const& node : nodes) {
+        for (std::size_t const child : existing(list(node, "children"), nodes.size(), {"", said_later})) {
+            is_child[child] = true;
         }
     }
-    std::vector<int> roots;
+    std::vector<std::size_t> roots;
     for (std::size_t i = 0; i < is_child.size(); ++i) {
         if (!is_child[i]) {
-            roots.push_back(static_cast<int>(i));
+            roots.push_back(i);
         }
     }
-    if (roots.empty() && !model.nodes.empty()) {
-        throw InputError("its nodes form a cycle");
+    if (roots.empty() && !nodes.empty()) {
+        throw InputError("its nodes form a cycle: each of them is below another");
     }
     return roots;
 }
 
-Node make_node(tinygltf::Node const& from, Index parent) {
+/// Throws InputError where a node that has been reached from `first` is reached again: by whom, and why that is wrong.
+[[noreturn]] void refuse_second_place(Json const& json, Pending const& again, std::vector<Index> const& parent) {
+    std::string const name = name_of(json, again.node);
+    for (Index above = again.parent; above != none; above = parent[static_cast<std::size_t>(above)]) {
+        if (static_cast<std::size_t>(above) == again.node) {
+            throw InputError(name + " is below itself: the nodes of a scene must form a tree");
+        }
+    }
+    auto const place = [&](Index by) {
+        return by == none ? std::string("in the list of the scene")
+                          : "as a child of " + name_of(json, static_cast<std::size_t>(by));
+    };
+    throw InputError(name + " is reached twice: " + place(parent[again.node]) + " and " + place(again.parent) +
+                     "; the nodes of a scene must form a tree");
+}
+
+Node make_node(Json const& from, Index parent, Faults const& faults) {
     Node node;
-    node.name = from.name;
+    node.name = text(from, "name");
     node.parent = parent;
-    if (from.matrix.size() == 16) {
-        node.matrix = glm::make_mat4(from.matrix.data());
+    auto const read = [&](char const* key, auto& out) {
+        faults.tried([&] { read_numbers(from, key, out); }, "; it is passed over");
+    };
+    if (!member(from, "matrix").is_null()) {
+        glm::dmat4 matrix(1);
+        read("matrix", matrix);
+        node.matrix = matrix;
     }
-    Vec4 const rotation = vec4(from.rotation, {0, 0, 0, 1});
-    if (from.translation.size() == 3) {
-        node.local.translation = glm::make_vec3(from.translation.data());
-    }
+    Vec4 rotation(0, 0, 0, 1);
+    read("rotation", rotation);
     node.local.rotation = Quat(rotation.w, rotation.x, rotation.y, rotation.z);
-    node.local.scale = vec3(from.scale, node.local.scale);
-    for (double const weight : from.weights) {
-        node.morph_weights.push_back(static_cast<float>(weight));
-    }
+    read("translation", node.local.translation);
+    read("scale", node.local.scale);
+    node.morph_weights = floats(from, "weights");
     return node;
 }
 
-void add_camera(tinygltf::Model const& model, int index, Index node, Scene& scene) {
-    tinygltf::Camera const& from = model.cameras[checked(index, model.cameras.size(), "camera")];
+SceneCamera make_camera(Json const& from, Index node, Scene const& scene) {
     SceneCamera camera;
-    camera.name = from.name.empty() ? scene.nodes[static_cast<std::size_t>(node)].name : from.name;
+    camera.name = text(from, "name");
+    if (camera.name.empty()) {
+        camera.name = scene.nodes[static_cast<std::size_t>(node)].name;
+    }
     camera.node = node;
-    if (from.type == "orthographic") {
+    if (text(from, "type") == "orthographic") {
         camera.projection = Projection::orthographic;
-        camera.vertical_extent = static_cast<float>(2 * std::abs(from.orthographic.ymag));
+        camera.vertical_extent = static_cast<float>(2 * std::abs(number(member(from, "orthographic"), "ymag", 0)));
     } else {
-        camera.vertical_extent = static_cast<float>(from.perspective.yfov);
+        camera.vertical_extent = static_cast<float>(number(member(from, "perspective"), "yfov", 0));
     }
-    scene.cameras.push_back(camera);
+    return camera;
 }
 
-void add_light(tinygltf::Model const& model, int index, Index node, Scene& scene) {
-    tinygltf::Light const& from = model.lights[checked(index, model.lights.size(), "light")];
+/// Throws InputError where nobody knows what light that is.
+Light make_light(Json const& from, Index node, Faults const& faults) {
     Light light;
-    if (from.type != "directional" && from.type != "point" && from.type != "spot") {
-        scene.warnings.push_back("light " + std::to_string(index) + " is of the unknown type '" + from.type +
-                                 "' and passed over");
-        return;
+    std::string const type = text(from, "type");
+    if (type != "directional" && type != "point" && type != "spot") {
+        throw InputError("a light of the unknown type '" + type + "' is passed over");
     }
-    light.type = from.type == "directional" ? LightType::directional
-                 : from.type == "spot"      ? LightType::spot
-                                            : LightType::point;
-    light.name = from.name;
+    light.type = type == "directional" ? LightType::directional : type == "spot" ? LightType::spot : LightType::point;
+    light.name = text(from, "name");
     light.node = node;
-    light.color = vec3(from.color, light.color);
-    light.intensity = static_cast<float>(from.intensity);
-    light.range = static_cast<float>(from.range);
-    light.inner_cone = static_cast<float>(from.spot.innerConeAngle);
-    light.outer_cone = static_cast<float>(from.spot.outerConeAngle);
-    scene.lights.push_back(light);
+    faults.tried([&] { read_numbers(from, "color", light.color); }, "; the light is white");
+    light.intensity = static_cast<float>(number(from, "intensity", light.intensity));
+    light.range = static_cast<float>(number(from, "range", light.range));
+    Json const& spot = member(from, "spot");
+    light.inner_cone = static_cast<float>(number(spot, "innerConeAngle", light.inner_cone));
+    light.outer_cone = static_cast<float>(number(spot, "outerConeAngle", light.outer_cone));
+    return light;
 }
 
-void import_skins(tinygltf::Model const& model, GltfAccessors const& accessors, GltfMapping const& mapping,
-                  Scene& scene) {
-    for (std::size_t i = 0; i < model.skins.size(); ++i) {
-        tinygltf::Skin const& from = model.skins[i];
-        Skin skin;
-        for (int const joint : from.joints) {
-            skin.joints.push_back(mapping.node[checked(joint, model.nodes.size(), "joint node")]);
-        }
-        if (from.inverseBindMatrices >= 0) {
-            skin.inverse_bind_matrices = accessors.read<Mat4>(from.inverseBindMatrices);
-            if (skin.inverse_bind_matrices.size() < skin.joints.size()) {
-                throw InputError("skin " + std::to_string(i) + " has fewer inverse bind matrices than joints");
-            }
-        }
-        skin.inverse_bind_matrices.resize(skin.joints.size(), Mat4(1));
-        scene.skins.push_back(std::move(skin));
+Skin make_skin(Json const& from, GltfAccessors const& accessors, GltfMapping const& mapping) {
+    Skin skin;
+    for (Json const& joint : list(from, "joints")) {
+        skin.joints.push_back(mapping.node[checked(joint, mapping.node.size(), "joint node")]);
     }
+    if (skin.joints.empty()) {
+        throw InputError("it has no joints");
+    }
+    if (Index const matrices = index(from, "inverseBindMatrices"); matrices != none) {
+        skin.inverse_bind_matrices = accessors.read<Mat4>(matrices);
+        if (skin.inverse_bind_matrices.size() < skin.joints.size()) {
+            throw InputError("it has fewer inverse bind matrices than joints");
+        }
+    }
+    skin.inverse_bind_matrices.resize(skin.joints.size(), Mat4(1));
+    return skin;
 }
+
+/// The places of instances of a mesh in its node (EXT_mesh_gpu_instancing).
+std::vector<Transform> read_instances(Json const& attributes, GltfAccessors const& accessors) {
+    auto const read = [&]<typename T>(char const* key, T const&) {
+        Index const accessor = index(attributes, key);
+        return accessor == none ? std::vector<T>() : accessors.read<T>(accessor);
+    };
+    std::vector<Vec3> const translations = read("TRANSLATION", Vec3());
+    std::vector<Vec4> const rotations = read("ROTATION", Vec4());
+    std::vector<Vec3> const scales = read("SCALE", Vec3());
+    std::size_t const count = std::max({translations.size(), rotations.size(), scales.size()});
+    for (auto const& [has, what] : {std::pair(translations.size(), " translations"),
+                                    std::pair(rotations.size(), " rotations"), std::pair(scales.size(), " scales")}) {
+        if (has != 0 && has != count) {
+            throw InputError("it has " + std::to_string(count) + " instances, but " + std::to_string(has) + what);
+        }
+    }
+    std::vector<Transform> out(count);
+    for (std::size_t i = 0; i < count; ++i) {
+        out[i].translation = translations.empty() ? Vec3(0) : translations[i];
+        out[i].scale = scales.empty() ? Vec3(1) : scales[i];
+        if (!rotations.empty()) {
+            out[i].rotation = Quat(rotations[i].w, rotations[i].x, rotations[i].y, rotations[i].z);
+        }
+    }
+    return out;
+}
+
+/// Imports what a node has besides its place.
+class NodeContent {
+public:
+    NodeContent(Json const& json, GltfAccessors const& accessors, ImportBudget& budget, GltfMapping& mapping,
+                Scene& scene)
+        : json_(json), accessors_(accessors), budget_(budget), mapping_(mapping), scene_(scene),
+          mesh_in_scene_(list(json, "meshes").size(), none) {}
+
+    /// `node`: the file's node, and its place in the scene, which is the last so far.
+    void import(Json const& from, Index node, bool hidden, Faults const& faults) {
+        if (Json const& mesh = member(from, "mesh"); !mesh.is_null() && !hidden) {
+            faults.tried([&] { import_mesh(mesh, member(from, "skin"), node, faults); }, "");
+            Json const& instancing = extension(from, "EXT_mesh_gpu_instancing");
+            faults.tried([&] { import_instances(member(instancing, "attributes"), node); }, "; it is shown once");
+        }
+        if (Json const& camera = member(from, "camera"); !camera.is_null()) {
+            Json::array_t const& cameras = list(json_, "cameras");
+            faults.tried(
+                [&] {
+                    scene_.cameras.push_back(
+                        make_camera(cameras[checked(camera, cameras.size(), "camera")], node, scene_));
+                },
+                "");
+        }
+        if (Json const& light = extension(from, "KHR_lights_punctual"); !light.is_null() && !hidden) {
+            Json::array_t const& lights = list(extension(json_, "KHR_lights_punctual"), "lights");
+            faults.tried(
+                [&] {
+                    scene_.lights.push_back(
+                        make_light(lights[checked(member(light, "light"), lights.size(), "light")], node, faults));
+                },
+                "");
+        }
+    }
+
+private:
+    void import_mesh(Json const& from, Json const& skin, Index node, Faults const& faults) {
+        std::size_t const mesh = checked(from, mesh_in_scene_.size(), "mesh");
+        if (mesh_in_scene_[mesh] == none) {
+            mesh_in_scene_[mesh] = static_cast<Index>(mapping_.used_meshes.size());
+            mapping_.used_meshes.push_back(mesh);
+        }
+        Node& to = scene_.nodes[static_cast<std::size_t>(node)];
+        to.mesh = mesh_in_scene_[mesh];
+        if (!skin.is_null()) {
+            faults.tried([&] { to.skin = static_cast<Index>(checked(skin, list(json_, "skins").size(), "skin")); },
+                         "; it is shown without it");
+        }
+    }
+
+    /// Gives the mesh of the node to a child of it for each instance.
+    void import_instances(Json const& attributes, Index node) {
+        std::vector<Transform> const places = read_instances(attributes, accessors_);
+        constexpr std::uint64_t node_bytes = 4 * sizeof(Node); // it, and what rendering makes of it
+        budget_.reserve(places.size(), node_bytes);
+        for (Transform const& place : places) {
+            Node instance = scene_.nodes[static_cast<std::size_t>(node)];
+            instance.name.clear();
+            instance.parent = node;
+            instance.local = place;
+            instance.matrix.reset();
+            scene_.nodes.push_back(std::move(instance));
+        }
+        if (!places.empty()) {
+            scene_.nodes[static_cast<std::size_t>(node)].mesh = none;
+        }
+    }
+
+    Json const& json_;
+    GltfAccessors const& accessors_;
+    ImportBudget& budget_;
+    GltfMapping& mapping_;
+    Scene& scene_;
+    std::vector<Index> mesh_in_scene_; ///< by the file's indices
+};
 
 } // namespace
 
-GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const& accessors, Scene& scene) {
+GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors,
+                              ImportBudget& budget, Scene& scene, std::vector<std::string>& faults) {
+    Json::array_t const& nodes = list(json, "nodes");
+    Json::array_t const& scenes = list(json, "scenes");
     GltfMapping mapping;
-    mapping.node.assign(model.nodes.size(), none);
-    std::vector<Index> mesh_in_scene(model.meshes.size(), none);
-    struct Pending {
-        int node;
-        Index parent;
-    };
+    mapping.node.assign(nodes.size(), none);
+    NodeContent content(json, accessors, budget, mapping, scene);
+    std::vector<Index> parent(nodes.size(), none); // in the file, of nodes that are in the scene
     std::vector<Pending> pending;
-    std::vector<int> const roots = root_nodes(model);
-    for (auto root = roots.rbegin(); root != roots.rend(); ++root) {
-        pending.push_back({*root, none});
-    }
+    auto const reach = [&](std::vector<std::size_t> const& children, Index from, bool hidden) {
+        for (auto child = children.rbegin(); child != children.rend(); ++child) {
+            pending.push_back({*child, from, hidden});
+        }
+    };
+    reach(scenes.empty() ? parentless(json)
+                         : existing(list(scenes[chosen], "nodes"), nodes.size(),
+                                    {named("scene", chosen, text(scenes[chosen], "name")), faults}),
+          none, false);
     while (!pending.empty()) {
         Pending const next = pending.back();
         pending.pop_back();
-        std::size_t const file_index = checked(next.node, model.nodes.size(), "node");
-        tinygltf::Node const& from = model.nodes[file_index];
-        if (mapping.node[file_index] != none) {
-            throw InputError("node " + std::to_string(file_index) +
-                             " is reached twice: it is in a cycle or has two parents");
+        if (mapping.node[next.node] != none) {
+            refuse_second_place(json, next, parent);
         }
+        Json const& from = nodes[next.node];
+        std::string const name = name_of(json, next.node);
+        if (!from.is_object()) {
+            faults.push_back(name + " is not an object");
+            continue;
+        }
+        Faults const of_node(name, faults);
         auto const index = static_cast<Index>(scene.nodes.size());
-        mapping.node[file_index] = index;
-        Node node = make_node(from, next.parent);
-        if (from.mesh >= 0) {
-            std::size_t const mesh = checked(from.mesh, model.meshes.size(), "mesh");
-            if (mesh_in_scene[mesh] == none) {
-                mesh_in_scene[mesh] = static_cast<Index>(mapping.used_meshes.size());
-                mapping.used_meshes.push_back(mesh);
-            }
-            node.mesh = mesh_in_scene[mesh];
-            node.skin = from.skin < 0 ? none : static_cast<Index>(checked(from.skin, model.skins.size(), "skin"));
-        }
-        scene.nodes.push_back(std::move(node));
-        if (from.camera >= 0) {
-            add_camera(model, from.camera, index, scene);
-        }
-        if (tinygltf::Value const* light = find_extension(from.extensions, "KHR_lights_punctual")) {
-            add_light(model, integer(*light, "light", none), index, scene);
-        }
-        for (auto child = from.children.rbegin(); child != from.children.rend(); ++child) {
-            pending.push_back({*child, index});
-        }
+        mapping.node[next.node] = index;
+        parent[next.node] = next.parent;
+        scene.nodes.push_back(
+            make_node(from, next.parent == none ? none : mapping.node[static_cast<std::size_t>(next.parent)], of_node));
+        bool const hidden = next.hidden || !flag(extension(from, "KHR_node_visibility"), "visible", true);
+        content.import(from, index, hidden, of_node);
+        reach(existing(list(from, "children"), nodes.size(), of_node), static_cast<Index>(next.node), hidden);
     }
-    import_skins(model, accessors, mapping, scene);
+    Json::array_t const& skins = list(json, "skins");
+    for (std::size_t i = 0; i < skins.size(); ++i) {
+        Skin& skin = scene.skins.emplace_back();
+        Faults(named("skin", i, text(skins[i], "name")), faults)
+            .tried([&] { skin = make_skin(skins[i], accessors, mapping); }, "; what it moves is shown without it");
+    }
     return mapping;
 }
 

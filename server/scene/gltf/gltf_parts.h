@@ -1,15 +1,13 @@
-// The parts of the glTF importer. Each turns one kind of thing of a tinygltf model into scene values.
-// In: the model, checked reading of its accessors. Out: parts of a Scene; InputError where the file is wrong.
+// The parts of the glTF importer. Each turns one kind of thing of a file into scene values.
+// In: the file, checked reading of its accessors. Out: parts of a Scene. Where the file is wrong, what is concerned is
+// left out, with a line in `faults` that names it.
 #pragma once
 
 #include <string>
 #include <vector>
 
+#include "server/scene/gltf/gltf_json.h"
 #include "server/scene/scene.h"
-
-namespace tinygltf {
-class Model;
-}
 
 namespace framelet {
 
@@ -17,16 +15,20 @@ class GltfAccessors;
 class ImportBudget;
 
 /// Imports textures and materials; image and texture indices are the file's.
-void import_gltf_materials(tinygltf::Model const& model, Scene& scene);
+void import_gltf_materials(Json const& json, Scene& scene, std::vector<std::string>& faults);
 
-/// Imports mesh `index` of the file. Material indices are the file's, `none` where a primitive has no material.
-Mesh import_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
-                      std::vector<std::string>& warnings);
+/// What comes of one mesh of the file.
+struct GltfMesh {
+    Mesh mesh; ///< material indices are the file's, `none` where a primitive has no material
+    std::vector<std::string> remarks, faults;
+};
+
+/// Imports mesh `index` of the file.
+GltfMesh import_gltf_mesh(Json const& json, GltfAccessors const& accessors, std::size_t index);
 
 /// Reserves what `import_gltf_mesh` and flat shading make of mesh `index`, so that a file that asks for too much is
 /// refused before the first of it is made.
-void reserve_gltf_mesh(tinygltf::Model const& model, GltfAccessors const& accessors, std::size_t index,
-                       ImportBudget& budget);
+void reserve_gltf_mesh(Json const& json, GltfAccessors const& accessors, std::size_t index, ImportBudget& budget);
 
 /// What of the file is where in the scene.
 struct GltfMapping {
@@ -34,12 +36,14 @@ struct GltfMapping {
     std::vector<std::size_t> used_meshes; ///< the file's indices, in the scene's order
 };
 
-/// Imports the nodes of the default scene, parents first, with their cameras, lights and skins. A node that is reached
-/// twice (a cycle, or two parents) is an InputError.
-GltfMapping import_gltf_nodes(tinygltf::Model const& model, GltfAccessors const& accessors, Scene& scene);
+/// Imports the nodes of the file's scene `chosen` (of all its nodes where it has no scenes), parents first, with their
+/// cameras, lights and skins. Reserves instances (EXT_mesh_gpu_instancing) in the budget. Throws InputError where they
+/// form no tree: a node is below itself, or has two parents.
+GltfMapping import_gltf_nodes(Json const& json, std::size_t chosen, GltfAccessors const& accessors,
+                              ImportBudget& budget, Scene& scene, std::vector<std::string>& faults);
 
 /// Imports the animations of nodes that are in the scene.
-void import_gltf_animations(tinygltf::Model const& model, GltfAccessors const& accessors,
-                            std::vector<Index> const& node_of, Scene& scene);
+void import_gltf_animations(Json const& json, GltfAccessors const& accessors, std::vector<Index> const& node_of,
+                            Scene& scene, std::vector<std::string>& faults);
 
 } // namespace framelet

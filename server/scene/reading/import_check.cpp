@@ -151,6 +151,10 @@ void check_import(std::filesystem::path const& file, ImportOptions const& option
     if (options.allow_outside) {
         words.emplace_back("--allow-outside");
     }
+    words.insert(words.end(), {"--up", options.up, "--unit", options.unit});
+    if (!options.scene.empty()) {
+        words.push_back("--scene=" + options.scene);
+    }
     words.insert(words.end(), {"--", file.string()});
     std::optional<Program> program;
     try {

@@ -21,6 +21,10 @@ struct ImportOptions {
     /// Animation clips, by name, that the scene must have. A glTF file that is read alone is refused without them
     /// before its meshes and pictures are read; for all else `clips_named` does that.
     std::vector<std::string> clips;
+    /// The scene of a glTF file that is shown, by name or number (from 0). Empty: the one that the file says.
+    std::string scene;
+    /// What a file's coordinates mean where it does not say so (`parse_up_axis`, `parse_unit`).
+    std::string up = "y", unit = "m";
     /// Program, framelet-server itself, that tries a file before this process reads it: a reader that crashes takes its
     /// process along. Empty: there is none.
     std::filesystem::path checker;

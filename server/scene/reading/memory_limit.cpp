@@ -1,4 +1,4 @@
-#include "server/scene/assimp/memory_limit.h"
+#include "server/scene/reading/memory_limit.h"
 
 #include <algorithm>
 #include <fstream>
