@@ -99,6 +99,11 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
                           ? import_gltf(file, folder, budget, options.scene, options.clips, options.is_serving, report)
                       : is_mesh_file(extension) ? import_mesh(file, folder, budget, report)
                                                 : import_assimp(file, folder, budget, report, options.is_serving);
+        if (extension == ".stl" && options.up == "y" && options.unit == "m") {
+            scene.warnings.emplace_back(
+                "an STL file says neither what its unit is nor which axis is up: taken as metres, "
+                "with y up; --unit and --up say otherwise");
+        }
         orient_scene(scene, parse_up_axis(options.up), parse_unit(options.unit));
         finish_scene(scene, budget, report);
         if (!is_gltf && !is_mesh_file(extension) && scene.origin != glm::dvec3(0)) {

@@ -48,9 +48,9 @@ TEST(CameraPath, PassesThroughItsKeysAndStandsOutsideThem) {
     EXPECT_EQ(path.duration(), 6);
     for (CameraKey const& key : path.keys) {
         Camera const camera = path.at(key.time);
-        EXPECT_LT(glm::distance(camera.position, key.position), 1e-4f);
+        EXPECT_LT(glm::distance(camera.position, Vec3(key.position)), 1e-4f);
         EXPECT_NEAR(camera.vertical_extent, key.vertical_fov, 1e-4f);
-        EXPECT_GT(glm::dot(camera.forward(), glm::normalize(key.target - key.position)), 0.9999f);
+        EXPECT_GT(glm::dot(camera.forward(), glm::normalize(Vec3(key.target - key.position))), 0.9999f);
     }
     EXPECT_EQ(path.at(0).position, path.at(1).position);
     EXPECT_EQ(path.at(100).position, path.at(6).position);

@@ -158,7 +158,8 @@ TEST(Shading, SurfacesDoNotShadowThemselvesAtAnyScale) {
                     if (x * x + y * y > 0.85f) {
                         continue;
                     }
-                    Seen const seen = look_along(ready, place.translation + scale * Vec3(x, y, 5), Vec3(0, 0, -scale));
+                    Seen const seen =
+                        look_along(ready, Vec3(place.translation) + scale * Vec3(x, y, 5), Vec3(0, 0, -scale));
                     float const cosine = std::sqrt(1 - x * x - y * y);
                     EXPECT_NEAR(seen.radiance.g, 0.5f / pi * cosine, 0.03f)
                         << scale << ' ' << away << ' ' << x << ' ' << y;

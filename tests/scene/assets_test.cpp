@@ -153,8 +153,8 @@ std::vector<Model> models() {
          {9.15f, 2.8f, 7.15f},
          true,
          2},
-        {"Peterbilt/peterbilt.obj", 116501, 116501, 39, 13, 0, 0, 0, {}, {}, {}, false},
-        {"Spot/spot.obj", 5856, 5856, 2, 2, 1, 0, 0, {}, {}, {}, false},
+        {"Peterbilt/peterbilt.obj", 116501, 116501, 1, 12, 0, 0, 0, {}, {}, {}, false},
+        {"Spot/spot.obj", 5856, 5856, 1, 1, 1, 0, 0, {}, {}, {}, false},
     };
 }
 

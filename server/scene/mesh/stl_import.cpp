@@ -153,8 +153,6 @@ bool is_binary(std::string_view bytes) {
 } // namespace
 
 void read_stl(std::string_view bytes, MeshReading& reading) {
-    reading.warnings.emplace_back("an STL file says neither what its unit is nor which axis is up: taken as metres, "
-                                  "with y up");
     StlReader reader{reading};
     if (is_binary(bytes)) {
         reader.read_binary(bytes);
