@@ -197,6 +197,7 @@ struct Scene {
     std::vector<SceneCamera> cameras;
     /// Where the files have the point that is (0, 0, 0) to whoever renders and looks; `evaluate_pose` leaves it out.
     glm::dvec3 origin{0, 0, 0};
+    bool is_truncated = false; ///< a file ends before all that it promises, as one does that is being written
     std::vector<std::string> warnings; ///< one line each: what of the file was passed over
     /// Files that the scene is made of, whether they exist or not; the scene files first.
     std::vector<std::filesystem::path> files;

@@ -99,6 +99,9 @@ Scene import_file(std::filesystem::path const& file, Progress const& report, Imp
                           ? import_gltf(file, folder, budget, options.scene, options.clips, options.is_serving, report)
                       : is_mesh_file(extension) ? import_mesh(file, folder, budget, report)
                                                 : import_assimp(file, folder, budget, report, options.is_serving);
+        if (options.is_serving && scene.is_truncated) { // what is being written is read again when it has changed
+            throw InputError("the file is truncated, or not all written yet");
+        }
         if (extension == ".stl" && options.up == "y" && options.unit == "m") {
             scene.warnings.emplace_back(
                 "an STL file says neither what its unit is nor which axis is up: taken as metres, "

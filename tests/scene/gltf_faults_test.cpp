@@ -362,9 +362,13 @@ TEST(GltfContainer, ACutFileShowsWhatIsThere) {
     std::string const whole =
         writer.glb(R"("nodes":[{"mesh":0},{"mesh":1}],"meshes":[{"primitives":[{"attributes":{"POSITION":0}}]},)"
                    R"({"primitives":[{"attributes":{"POSITION":1}}]}])");
-    Scene const scene = import_scene(folder.write("a.glb", whole.substr(0, whole.size() - 20)));
+    std::filesystem::path const cut = folder.write("a.glb", whole.substr(0, whole.size() - 20));
+    Scene const scene = import_scene(cut);
     EXPECT_EQ(shown_triangles(scene), 1u);
     EXPECT_NE(lines_of(scene).find("the file is truncated"), std::string::npos) << lines_of(scene);
+    ImportOptions serving;
+    serving.is_serving = true;
+    EXPECT_THROW(import_scene(cut, {}, serving), InputError) << "it may be being written";
 }
 
 } // namespace

@@ -196,6 +196,7 @@ TEST(PlyFile, BinaryOfEitherOrder) {
         Scene const cut = import_scene(folder.write("a.ply", text.substr(0, text.size() - 5)));
         EXPECT_EQ(triangles_of(cut), 1u);
         EXPECT_EQ(joined(cut.warnings), "the file ends after 1 of 2 of its 'face' elements\n");
+        EXPECT_TRUE(cut.is_truncated && !scene.is_truncated);
     }
 }
 
@@ -303,6 +304,7 @@ TEST(StlFile, WhatCannotBeReadCostsItsTriangle) {
     Scene const cut = import_scene(folder.write("a.stl", binary.substr(0, binary.size() - 1)));
     EXPECT_EQ(triangles_of(cut), 1u);
     EXPECT_NE(joined(cut.warnings).find("the file ends after 1 of 2 triangles"), std::string::npos);
+    EXPECT_TRUE(cut.is_truncated);
     std::string const whole =
         "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
     std::string broken = whole;

@@ -143,6 +143,7 @@ void read_buffers(GltfFile& file, std::optional<std::span<std::byte const>> data
                     return; // it is wrong only to use it (glTF 2.0 section 3.6.1.1)
                 }
                 if (bytes.size() < wanted) {
+                    file.is_truncated = true;
                     of_buffer.note((uri.empty() || uri.starts_with(data_scheme) ? "it" : "'" + uri + "'") + " has " +
                                    std::to_string(bytes.size()) + " of " + std::to_string(wanted) + " bytes");
                 } else if (wanted > 0) {
@@ -186,6 +187,7 @@ std::unique_ptr<GltfFile> read_gltf(std::filesystem::path const& file, SceneFold
         out->memory.emplace_back(read_bytes(opened, file.string(), budget, on_bytes));
     GltfContainer const container = open_gltf_container(bytes);
     out->json = parse_gltf_json(container.json, budget);
+    out->is_truncated = container.is_cut;
     if (container.is_cut) {
         faults.emplace_back("the file is truncated: it ends before what is in it does");
     }

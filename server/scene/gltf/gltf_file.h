@@ -25,6 +25,7 @@ struct GltfFile {
     std::vector<std::span<std::byte const>> buffers; ///< as long as they say; empty where they cannot be read
     std::map<Index, std::span<std::byte const>> decoded_views; ///< buffer views that were compressed
     std::vector<std::vector<std::byte>> memory; ///< what these lie in
+    bool is_truncated = false; ///< as of `Scene`
     std::string lacks; ///< what the file requires and the importer does not read, as a line; empty: nothing
 };
 

@@ -83,6 +83,7 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
     std::vector<std::string> faults;
     progress("reading", 0);
     auto const file = read_gltf(path, folder, budget, scene.warnings, faults, progress);
+    scene.is_truncated = file->is_truncated;
     Json const& json = file->json;
     GltfAccessors const accessors(*file, budget);
     progress("reading", 1);

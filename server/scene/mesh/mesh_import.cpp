@@ -87,6 +87,7 @@ Scene import_mesh(std::filesystem::path const& file, SceneFolder const& folder, 
         auto* const read = extension == ".obj" ? read_obj : extension == ".ply" ? read_ply : read_stl;
         read(bytes, reading);
         reading.tell(bytes.size(), bytes.size());
+        scene.is_truncated = reading.is_truncated;
     }
     add_default_material(reading.soup, materials);
     add_soup(std::move(reading.soup), file.stem().string(), budget, scene, progress);

@@ -32,6 +32,7 @@ struct MeshReading {
     MaterialList& materials;
     PolygonSoup soup = {};
     std::uint64_t reserved = 0; ///< bytes, for the soup
+    bool is_truncated = false; ///< as of `Scene`
 
     /// Tells how much of the file has been read, and reserves what has become of it since the last call.
     void tell(std::size_t bytes_read, std::size_t bytes);

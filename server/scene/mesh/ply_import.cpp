@@ -348,6 +348,7 @@ struct PlyReader {
         for (std::size_t i = 0; i < element.count; ++i) {
             bool is_whole = false;
             if (!elements.next(element, values, is_whole)) {
+                reading.is_truncated = true;
                 reading.warnings.push_back("the file ends after " + std::to_string(i) + " of " +
                                            std::to_string(element.count) + " of its '" + element.name + "' elements");
                 return;

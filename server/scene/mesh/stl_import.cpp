@@ -103,6 +103,7 @@ struct StlReader {
         std::size_t const promised = read_at<std::uint32_t>(bytes, 80);
         std::size_t const there = std::min(promised, (bytes.size() - header_bytes) / triangle_bytes);
         if (there < promised) {
+            reading.is_truncated = true;
             reading.warnings.push_back("the file ends after " + std::to_string(there) + " of " +
                                        std::to_string(promised) + " triangles");
         }

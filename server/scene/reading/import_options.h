@@ -28,9 +28,9 @@ struct ImportOptions {
     /// Program, framelet-server itself, that tries a file before this process reads it: a reader that crashes takes its
     /// process along. Empty: there is none.
     std::filesystem::path checker;
-    /// True where this process has viewers: every file is tried before. Else only those are of formats with trees,
-    /// which Assimp goes through recursively; and while it reads, this process as a whole gets no more memory than what
-    /// is left of `memory_bytes`.
+    /// True where this process has viewers: every file is tried before, and one that ends too early is refused. Else
+    /// only those are of formats with trees, which Assimp goes through recursively; and while it reads, this process as
+    /// a whole gets no more memory than what is left of `memory_bytes`.
     bool is_serving = false;
     /// How long the checker may go on without a sign of progress.
     std::chrono::milliseconds checker_patience = std::chrono::minutes(5);
