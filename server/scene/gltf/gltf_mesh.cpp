@@ -11,8 +11,8 @@
 namespace framelet {
 namespace {
 
-/// Modes of a primitive (glTF 2.0 section 5.24.4); those below are points and lines.
-constexpr std::uint64_t triangles_mode = 4, strip_mode = 5, fan_mode = 6;
+/// Modes of a primitive (glTF 2.0 section 5.24.4); those below are points and lines, the one between is strips.
+constexpr std::uint64_t triangles_mode = 4, fan_mode = 6;
 
 /// Turns the vertex order of triangles, strips and fans into a triangle list (glTF 2.0 section 3.7.2.1).
 std::vector<std::array<std::uint32_t, 3>> make_triangles(std::vector<std::uint32_t> const& order, std::uint64_t mode) {
