@@ -51,8 +51,8 @@ inline float worn_spacing(float spacing, float age, float rate) {
     return std::max(spacing, finest_shown_spacing) + rate * std::abs(age);
 }
 
-/// Pixels by which samples may have gone otherwise than they were seen to go, at which they go no farther: from then on
-/// they show where they were last known to go.
+/// Pixels by which samples may have gone otherwise than they were seen to go, at which they are lost: from then on they
+/// show where their body has them, without their drift, and where nothing shows that is not lost.
 inline constexpr float most_straying = 2;
 
 /// Seconds of scene time, before and after its rendering, for which a sample follows its drift: until it may be

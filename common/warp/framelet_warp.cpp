@@ -204,10 +204,9 @@ void FrameletWarp::rate(std::uint32_t view, DecorrelationCode decorrelation, Lay
         patch.group = drifting_group(patch.group);
         patch.worn *= leads(layer.body, layer.drift, age) ? ahead_of_all : 1.0f;
     }
-    // Nothing newer replaces it in its place: it may be anywhere.
-    bool const is_lost = is_lost_ && !role_.is_base;
-    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.drift, age) && !is_lost;
-    if (is_astray(spacing, misplaced) || is_lost) {
+    bool const is_replaced = role_.is_base; // by what is newer, in its place: else it may be anywhere
+    patch.hides = hides(spacing, misplaced) && !is_adrift(layer.body, layer.drift, age) && (is_replaced || !is_lost_);
+    if (is_astray(spacing, misplaced) || is_lost_) {
         patch.tolerance = static_cast<float>(largest); // it never counts as the nearer one
     }
 }
@@ -239,8 +238,8 @@ double FrameletWarp::inverse_depth_within(double pixels, MergedLayer const& merg
     return within > 0 ? within : 0;
 }
 
-/// Seconds of scene time for which what is of this jerk and inverse depth has followed its drift, of either sign; notes
-/// where it would go on for longer.
+/// Seconds of scene time, of either sign, for which what is of this jerk and inverse depth has followed its drift; 0
+/// once it is lost, which is noted.
 float FrameletWarp::followed_age(std::uint32_t view, float jerk, double inverse_depth) {
     HeldView const& from = cache_.views()[view];
     auto const age = static_cast<float>(time_ - from.scene_time);
@@ -251,7 +250,7 @@ float FrameletWarp::followed_age(std::uint32_t view, float jerk, double inverse_
     ViewRays const rays = make_view_rays(from.camera, cache_.plane().viewport());
     float const seconds = followed_seconds(jerk, static_cast<float>(inverse_depth) / glm::length(rays.direction_dx));
     is_lost_ = std::abs(age) > seconds;
-    return std::clamp(age, -seconds, seconds);
+    return is_lost_ ? 0 : age;
 }
 
 glm::dvec2 FrameletWarp::middle(HeldLayer const& layer) const {

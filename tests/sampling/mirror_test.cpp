@@ -94,6 +94,32 @@ TEST(Mirror, WhatDriftsBrieflyIsReplacedInItsPlace) {
     }
 }
 
+/// Pieces of a wall that drifts to the right, nobody knows how far, as something that bends does.
+std::vector<Piece> bending_wall(int depth, SceneTime time, std::uint64_t batch, float nearer) {
+    std::vector<Piece> pieces = render_pieces(plane, depth, wall, time, batch);
+    for (Piece& piece : pieces) {
+        piece.inverse_depth *= nearer;
+        piece.body = 7;
+        piece.drift = {Vec3(40, 0, 0), Vec3(0), 1e4f};
+        piece.moves = true;
+    }
+    return pieces;
+}
+
+TEST(Mirror, WhatIsLostShowsWhereItWasRenderedAndHidesNothing) {
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0), 1), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, bending_wall(plane.pixel_depth(), 1, 1, 2));
+    mirror.look(view_at(Vec3(0), 1.01), no_motions);
+    EXPECT_GT(summary_of(mirror).holes, 0) << "it drifts away from the edge";
+    mirror.look(view_at(Vec3(0), 2), no_motions);
+    EXPECT_EQ(summary_of(mirror).holes, 0);
+    EXPECT_GT(mirror.cell(3, 3).stale, 0.01f) << "it is to be rendered again";
+    mirror.add(view_at(Vec3(0)).rays, no_motions, bending_wall(plane.pixel_depth() - 1, 2, 2, 1));
+    mirror.look(view_at(Vec3(0), 2), no_motions);
+    EXPECT_NEAR(summary_of(mirror).worn, 2, 0.1) << "what is lost is nearer and finer";
+}
+
 TEST(Mirror, ACameraThatGoesSidewaysUncoversItsEdge) {
     Mirror mirror(viewport);
     mirror.look(view_at(Vec3(0)), no_motions);

@@ -27,6 +27,7 @@ struct Cell {
     std::uint8_t moment = 0; ///< slot of the moment of that piece
     std::uint8_t share = 0; ///< number of its 16 pixels that the piece that shows covers
     bool leads = false; ///< what shows is a shadow that shows before better samples, as with the viewer
+    bool is_lost = false; ///< what shows has drifted for longer than is known where to
     bool is_outdated = false; ///< the scene has jumped since that was rendered: whatever comes shows before it
     bool moves = false; ///< something in the framelet that shows may move, and does not rest
     bool is_supersampled = false; ///< as `Piece::is_supersampled`

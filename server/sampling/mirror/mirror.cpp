@@ -12,8 +12,8 @@ namespace {
 constexpr float same_surface = 0.02f;
 /// A piece that covers fewer pixels of a cell than this shows only where it covers more of them than another.
 constexpr int least_share = cell_pixels / 2;
-/// Squared luma by which what has drifted for too long is taken to look otherwise than it shows.
-constexpr float lost_error = 0.001f;
+/// Squared luma by which what has drifted for too long is taken to look otherwise than it shows: about as bad as bare.
+constexpr float lost_error = 0.05f;
 /// More than a viewer can hold is not worth remembering as gone.
 constexpr std::size_t most_forgotten = std::size_t{1} << 18;
 /// A moment keeps room for a piece for so many cells, which is a quarter of what a picture at rest has.
@@ -236,8 +236,7 @@ bool Mirror::shows_outliers(Moment const& moment) const {
 }
 
 PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
-    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions,
-            &moment == &moments_[base_]}; // the last cells are whole, too
+    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
 }
 
 /// Draws the pieces of a moment, from `first` on, into the cells. `is_new`: they have just come.
@@ -314,6 +313,7 @@ void Mirror::put(Moment const& moment, std::size_t index, float inverse_depth, i
     cell.worn = reprojected.worn;
     cell.leads = reprojected.leads;
     cell.is_outdated = reprojected.is_outdated;
+    cell.is_lost = reprojected.is_lost;
     cell.detail = piece.detail / reprojected.scale;
     cell.spacing = piece.spacing;
     cell.decorrelation = reprojected.is_still ? 0 : piece.decorrelation;
@@ -329,6 +329,9 @@ bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {
         return share > cell.share;
+    }
+    if (reprojected.is_lost || cell.is_lost) {
+        return reprojected.is_lost != cell.is_lost ? cell.is_lost : reprojected.worn < cell.worn;
     }
     float const difference = inverse_depth - cell.inverse_depth;
     float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + reprojected.tolerance;

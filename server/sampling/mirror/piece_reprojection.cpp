@@ -61,7 +61,6 @@ BodyTransform const& transform_of(PieceReprojection const& reprojection, Piece c
 struct Display {
     Vec2 size{0}; ///< pixels
     float source_focal = 1, focal = 1; ///< focal lengths, pixels, of the piece's camera and of the picture's
-    bool is_base = true; ///< as of `PieceReprojection`
 };
 
 /// Takes one piece to the picture. `age`: of the piece in it, seconds of scene time.
@@ -72,10 +71,7 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Displa
     if (piece.drift.any()) {
         float const followed = followed_seconds(piece.drift.jerk, piece.inverse_depth * display.source_focal);
         is_lost = std::abs(age) > followed;
-        if (is_lost && !display.is_base) {
-            return {};
-        }
-        Vec3 const drift = piece.drift.after(std::clamp(age, -followed, followed));
+        Vec3 const drift = is_lost ? Vec3(0) : piece.drift.after(age);
         parallax += drift.x * body.carried[0] + drift.y * body.carried[1] + drift.z * body.carried[2];
     }
     Vec3 const at = body.far * Vec3(piece.centre, 1) + piece.inverse_depth * parallax;
@@ -139,8 +135,7 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
     ++transforms.stamp;
     TimeSpan const valid = reprojection.motions->between_jumps(reprojection.display.scene_time);
     auto const focal = [](ViewRays const& rays) { return 1 / glm::length(rays.direction_dx); };
-    Display const display{reprojection.display_size, focal(reprojection.source), focal(reprojection.display.rays),
-                          reprojection.is_base};
+    Display const display{reprojection.display_size, focal(reprojection.source), focal(reprojection.display.rays)};
     for (std::size_t i = 0; i < pieces.size(); ++i) {
         Piece const& piece = pieces[i];
         if (i > 0 && piece.scene_time != pieces[i - 1].scene_time) {

@@ -63,7 +63,6 @@ struct PieceReprojection {
     MirrorView display{};
     Vec2 display_size{0}; ///< pixels
     BodyMotions const* motions = nullptr; ///< not null
-    bool is_base = true; ///< the moment is the newest camera's base, where newer framelets replace older ones
 };
 
 /// Appends one to `reprojected` for each piece. Not in the picture are outliers unless `with_outliers`, what lies

@@ -25,7 +25,7 @@ constexpr float drifting_seconds = 0.1f;
 constexpr float most_followed_seconds = 0.8f;
 /// Seconds of scene time less than which a drift is followed briefly: of the moments that what moves is held by none
 /// would show it for longer.
-constexpr float brief_seconds = 0.12f;
+constexpr float brief_seconds = 0.2f;
 
 /// Samples that may share a layer: of one body, of shadows that pass, or the sky.
 struct Group {
