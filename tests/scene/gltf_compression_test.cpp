@@ -236,7 +236,7 @@ TEST(GltfMeshopt, VerticesAndIndicesAreAsTheyWere) {
                     right.push_back(square_corners[square_triangles[t][c]]);
                 }
                 // Where a triangle begins is the encoder's choice.
-                std::ranges::rotate(found, std::ranges::find(found, right[0]));
+                std::rotate(found.begin(), std::ranges::find(found, right[0]), found.end());
                 EXPECT_EQ(found, right);
             }
         }
