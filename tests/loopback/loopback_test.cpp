@@ -379,9 +379,12 @@ TEST(Loopback, ACertificateThatNobodyVouchesForIsAskedAboutAndTrustedUntilItChan
                              {"--tls-cert", certificate, "--tls-key", key, "--token-file", token, "--paused"});
         address = server.address();
         std::string const mark = "certificate SHA-256 ";
-        std::string const printed = server.process().output();
+        std::string printed;
+        ASSERT_TRUE(eventually([&] { // it says its address first
+            printed = server.process().output();
+            return printed.ends_with('\n') && printed.find(mark) != std::string::npos;
+        })) << printed;
         std::size_t const start = printed.find(mark);
-        ASSERT_NE(start, std::string::npos) << printed;
         std::string const fingerprint = printed.substr(start + mark.size(), 95);
         auto const [code, refusal] = connect();
         EXPECT_EQ(code, 1) << "nobody can be asked";
