@@ -46,7 +46,7 @@ std::string loss_in(std::string_view line) {
     // "Warn,  T0: FBX: ignoring ..."
     for (std::string_view const before : {"Warn,", "Error,", "T0:"}) {
         std::size_t const at = line.find(before);
-        line.remove_prefix(at == line.npos || at > 12 ? 0 : at + before.size());
+        line.remove_prefix(at > 12 ? 0 : at + before.size()); // also where there is none
     }
     std::size_t const first = line.find_first_not_of(" \n\r");
     line = first == line.npos ? std::string_view() : line.substr(first, line.find_last_not_of(" \n\r") + 1 - first);

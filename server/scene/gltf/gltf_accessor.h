@@ -33,7 +33,8 @@ public:
     /// become -1..1 or 0..1 where the accessor says `normalized`, else keep their value.
     template <class T>
     std::vector<T> read(Index accessor) const {
-        std::vector<T> values(checked_count(accessor, sizeof(T) / sizeof(float), sizeof(T)));
+        constexpr std::size_t component_bytes = sizeof(float);
+        std::vector<T> values(checked_count(accessor, sizeof(T) / component_bytes, sizeof(T)));
         if (!values.empty()) {
             read_floats(accessor, reinterpret_cast<float*>(values.data()));
         }

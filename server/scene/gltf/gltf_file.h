@@ -21,6 +21,10 @@ namespace framelet {
 class GltfAccessors;
 
 struct GltfFile {
+    GltfFile() noexcept(false) = default; // memory for the JSON may be missing
+    GltfFile(GltfFile const&) = delete; // its spans lead into its own memory
+    GltfFile& operator=(GltfFile const&) = delete;
+
     Json json; ///< without `extras`
     std::vector<std::span<std::byte const>> buffers; ///< as long as they say; empty where they cannot be read
     std::map<Index, std::span<std::byte const>> decoded_views; ///< buffer views that were compressed
