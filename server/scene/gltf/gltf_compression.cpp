@@ -113,6 +113,8 @@ void decompress_views(GltfFile& file, ImportBudget& budget, std::vector<std::str
 }
 
 struct DracoMesh::Parts {
+    Parts() noexcept(false) = default; // memory for the JSON may be missing
+
     std::unique_ptr<draco::Mesh> mesh;
     Json ids;
 
