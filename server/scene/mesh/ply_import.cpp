@@ -92,7 +92,8 @@ Header read_header(TextLines& lines, std::size_t file_bytes, LineRemarks& remark
             if (!count || !(*count >= 0)) {
                 throw InputError("its header has no number of '" + std::string(name) + "'");
             }
-            if (*count > static_cast<double>(file_bytes / least_element_bytes)) {
+            auto const most = file_bytes / least_element_bytes;
+            if (*count > static_cast<double>(most)) {
                 throw InputError("its header promises " + std::string(word) + " elements, more than its " +
                                  std::to_string(file_bytes) + " bytes can hold");
             }
