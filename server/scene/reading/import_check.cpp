@@ -45,6 +45,7 @@ public:
     Program(std::filesystem::path const& program, std::vector<std::string> words) {
         words.insert(words.begin(), "framelet-server");
         std::vector<char*> arguments;
+        arguments.reserve(words.size() + 1);
         for (std::string& word : words) {
             arguments.push_back(word.data());
         }
@@ -134,7 +135,7 @@ private:
 
 /// What the program says of the file in its last line, without what is said of each: its own name and the file's.
 std::string complaint(std::string text, std::filesystem::path const& file) {
-    text.erase(text.find_last_not_of("\n") + 1);
+    text.erase(text.find_last_not_of('\n') + 1);
     text.erase(0, text.rfind('\n') + 1);
     for (std::string const& start : {std::string("framelet-server: "), "cannot load scene '" + file.string() + "': "}) {
         text.erase(0, text.starts_with(start) ? start.size() : 0);
