@@ -15,7 +15,8 @@ std::vector<std::filesystem::path> scene_files_in(std::filesystem::path const& f
     endings.insert({".gltf", ".glb"});
     std::vector<std::filesystem::path> files;
     std::error_code code;
-    std::filesystem::directory_iterator(folder, code); // that this one may not be read is no reason to pass it over
+    std::filesystem::directory_iterator const first(folder,
+                                                    code); // that this one may not be read is no reason to pass it over
     std::filesystem::recursive_directory_iterator entry;
     if (!code) {
         entry = {folder, std::filesystem::directory_options::skip_permission_denied, code};
