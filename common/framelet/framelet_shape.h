@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -25,18 +26,43 @@ inline constexpr std::size_t max_layers = 3;
 /// though it stays where it is. See `common/framelet/sample_worth.h`. 0: its looks do not change.
 using DecorrelationCode = std::uint8_t;
 
+/// An angular rate as a code: 0 for 0, else 2^((code - 96) / 32) radians a second.
+using SwingCode = std::uint8_t;
+
+/// Radians a second of a code.
+inline float swing_rate(SwingCode code) {
+    return code == 0 ? 0.0f : std::exp2(static_cast<float>(code - 96) / 32);
+}
+
+/// The nearest code of a rate >= 0; 0 for what is slower than codes go, and for what is not a number.
+inline SwingCode swing_code(float rate) {
+    if (!(rate > 0.125f)) {
+        return 0;
+    }
+    return static_cast<SwingCode>(std::lround(std::clamp(32 * std::log2(rate) + 96, 1.0f, 255.0f)));
+}
+
 /// How a sample goes on besides the motion of its body: of what deforms, and of a shadow that passes over what stands.
-/// After s seconds of scene time, of either sign, it is s * velocity + s^2 / 2 * acceleration farther, metres in the
-/// world, and at most jerk * |s|^3 / 6 metres off that.
+/// It swings or goes round, x'' = -rate^2 (x - middle): after s seconds of scene time, of either sign, it is
+/// sin(rate s) / rate * velocity + (1 - cos(rate s)) / rate^2 * acceleration farther, metres in the world, and at most
+/// jerk * |s|^3 / 6 metres off that. At rate 0 that is a parabola.
 struct Drift {
     Vec3 velocity{0}; ///< metres a second
     Vec3 acceleration{0}; ///< metres a second squared
     float jerk = 0; ///< metres a second cubed, >= 0
+    SwingCode swing = 0; ///< of the rate
 
     bool operator==(Drift const&) const = default;
 
     bool any() const { return velocity != Vec3(0) || acceleration != Vec3(0) || jerk != 0; }
-    Vec3 after(float seconds) const { return seconds * velocity + (0.5f * seconds * seconds) * acceleration; }
+    Vec3 after(float seconds) const {
+        if (swing == 0) {
+            return seconds * velocity + (0.5f * seconds * seconds) * acceleration;
+        }
+        float const rate = swing_rate(swing);
+        float const half = std::sin(0.5f * rate * seconds) / rate;
+        return (std::sin(rate * seconds) / rate) * velocity + (2 * half * half) * acceleration;
+    }
 };
 
 /// The drift of a layer's samples, affine on the image plane: that at the tile's upper left corner, and what it changes
@@ -55,7 +81,8 @@ struct LayerDrift {
     /// The drift so many pixels from the corner.
     Drift at(Vec2 from_corner) const {
         return {corner.velocity + from_corner.x * velocity_dx + from_corner.y * velocity_dy,
-                corner.acceleration + from_corner.x * acceleration_dx + from_corner.y * acceleration_dy, corner.jerk};
+                corner.acceleration + from_corner.x * acceleration_dx + from_corner.y * acceleration_dy, corner.jerk,
+                corner.swing};
     }
 };
 

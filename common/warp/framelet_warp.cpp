@@ -272,7 +272,7 @@ void FrameletWarp::turn_to(std::uint32_t view, HeldLayer const& held) {
     float const age = followed_age(view, layer.drift.corner.jerk, inverse_depth);
     turn_to(view, layer.body, glm::dvec3(layer.drift.at(Vec2(at)).after(age)));
     auto const after = [&](Vec3 const& velocity, Vec3 const& acceleration) {
-        return glm::dvec3(Drift{velocity, acceleration}.after(age));
+        return glm::dvec3(Drift{velocity, acceleration, 0, layer.drift.corner.swing}.after(age));
     };
     if (!is_still_) {
         stretch_ = make_stretch(layer, display_rays_, at, after(layer.drift.velocity_dx, layer.drift.acceleration_dx),

@@ -30,11 +30,24 @@ struct Layers {
     alignas(64) std::array<std::int32_t, pixels> group, is_firm;
     /// Inverse depth of a surface that is known not to go as far as here; less than 0: there is none.
     alignas(64) std::array<float, pixels> ended;
+    bool has_shadows = false; ///< some group drifts
 };
 
 /// Index of a pixel in `Layers`.
 constexpr std::size_t index_of(int x, int y) {
     return static_cast<std::size_t>(x / wide_columns * (wide_columns * side) + y * wide_columns + x % wide_columns);
+}
+
+/// True for pixels that show a shadow clearly before this depth of a group that is none: it lies on no surface there,
+/// and hides nothing.
+WideInts shows_loose_shadow(WideFloats depth, WideFloats limit, std::int32_t group, std::size_t first,
+                            Layers const& layers) {
+    if (!layers.has_shadows || is_drifting(group)) {
+        return WideInts{};
+    }
+    WideInts const groups = load_lanes<WideInts>(&layers.group[first]);
+    return (groups >= 0) & ((groups & drifting_bit) != 0) &
+           (load_lanes<WideFloats>(&layers.inverse_depth[first]) - depth > limit);
 }
 
 /// True for pixels where nothing of a group can show at such inverse depths: they are covered firmly, by what is near
@@ -44,7 +57,8 @@ WideInts is_hidden(WideFloats depth, float tolerance, std::int32_t group, std::s
     WideFloats const hiding = (1 + rounding - same_surface) * depth - tolerance;
     return load_lanes<WideInts>(&layers.is_firm[first]) &
            (load_lanes<WideFloats>(&layers.inverse_depth[first]) >= hiding) &
-           (load_lanes<WideInts>(&layers.group[first]) != group);
+           (load_lanes<WideInts>(&layers.group[first]) != group) &
+           ~shows_loose_shadow(depth, tolerance + same_surface * depth, group, first, layers);
 }
 
 /// Lets candidates compete with what pixels have; true when one of them shows. Firm wins over not firm. Of two alike
@@ -68,7 +82,8 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
     }
     WideInts const was_firm = load_lanes<WideInts>(&layers.is_firm[first]);
     WideInts const joins = shows & (groups == group) & (depth - there <= limit) & (there - depth <= limit);
-    WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & (depth > there + limit)));
+    WideInts const in_front = (depth > there + limit) | shows_loose_shadow(depth, limit, group, first, layers);
+    WideInts const wins = shows & ((is_firm & ~was_firm) | (~(is_firm ^ was_firm) & in_front));
     WideInts const replaces = wins & ~joins;
     WideFloats const zero{};
     WideFloats const one = zero + 1;
@@ -169,8 +184,11 @@ bool is_hidden(Splat const& splat, std::int32_t group, int left, int top, Layers
         return static_cast<int>(std::clamp(at - static_cast<float>(from), 0.0f, side - 1.0f));
     };
     std::size_t const at = index_of(pixel(splat.x, left), pixel(splat.y, top));
-    return layers.is_firm[at] != 0 && layers.group[at] != group &&
-           layers.inverse_depth[at] >= (1 - same_surface) * splat.inverse_depth;
+    float const there = layers.inverse_depth[at];
+    bool const is_loose =
+        is_drifting(layers.group[at]) && !is_drifting(group) && there > (1 + same_surface) * splat.inverse_depth;
+    return layers.is_firm[at] != 0 && layers.group[at] != group && there >= (1 - same_surface) * splat.inverse_depth &&
+           !is_loose;
 }
 
 /// True where the tent of a splat has columns in the block.
@@ -211,6 +229,7 @@ bool paint_splat(Splat const& splat, std::int32_t group, int left, int top, Laye
 /// Paints a patch; true when something of it shows.
 bool paint_patch(PatchView const& view, int left, int top, Layers& layers) {
     WarpPatch const& patch = *view.patch;
+    layers.has_shadows = layers.has_shadows || is_drifting(patch.group);
     if (!patch.is_outlier) {
         return paint_layer(patch, left, top, layers);
     }

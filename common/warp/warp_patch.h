@@ -15,8 +15,12 @@ constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth)
 }
 /// The group of what drifts over the surface that it lies on (a shadow): it adds up with its like only, not with what
 /// it comes over.
+inline constexpr std::int32_t drifting_bit = 1 << 30;
 constexpr std::int32_t drifting_group(std::int32_t group) {
-    return group | 1 << 30;
+    return group | drifting_bit;
+}
+constexpr bool is_drifting(std::int32_t group) {
+    return group >= 0 && (group & drifting_bit) != 0;
 }
 /// Bit that is set in the group of samples that lie on their own pixels, which those that have moved do not.
 inline constexpr std::int32_t still_bit = 1 << 29;

@@ -19,7 +19,7 @@ namespace framelet {
 using Bytes = std::vector<std::byte>;
 using ByteView = std::span<std::byte const>;
 
-inline constexpr std::uint16_t protocol_version = 6;
+inline constexpr std::uint16_t protocol_version = 7;
 
 /// A ticket lets a viewer go on where its connection was cut: 128 random bits. All of them 0: none.
 struct Ticket {

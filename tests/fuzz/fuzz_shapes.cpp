@@ -56,7 +56,7 @@ bool is_quantised(FrameletShape const& got, FrameletShape const& sent, int side_
         auto const half_unit = [&](float most) {
             return unit_of(unit_above(static_cast<double>(most) / largest_drift_code)) / 2 / static_cast<double>(scale);
         };
-        bool near = a.jerk == jerk_of(quantise_jerk(b.jerk));
+        bool near = a.jerk == jerk_of(quantise_jerk(b.jerk)) && a.swing == b.swing;
         for (int axis = 0; axis < 3; ++axis) {
             auto const off = [&](Vec3 const& one, Vec3 const& other) {
                 return std::abs(static_cast<double>(one[axis]) - static_cast<double>(other[axis]));

@@ -100,6 +100,30 @@ TEST(DriftingShadow, IsNotBelievedForLongAgainstWhatWasSeenSince) {
     EXPECT_LE(got.shadow.share(), 0.001);
 }
 
+TEST(DriftingShadow, ShowsNowhereButOnWhatItDarkens) {
+    AnalyticScene scene = shaded_floor(); // whose floor ends at x = 1, and the shadow goes on
+    scene.quads[0] = {{-8, 0, -8}, {9, 0, 0}, {0, 0, 16}, plain(bright, bright, bright)};
+    scene.quads.push_back({{-8, -2, -8}, {16, 0, 0}, {0, 0, 16}, plain(120, 120, 120)});
+    FrameletPool pool((ImagePlane(viewport)));
+    pool.insert(batch_at(scene, 1, front(), 0), scene.motions);
+    Shown const shown = show(pool, front(), 0.3);
+    int beyond = 0;
+    for (int y = 0; y < viewport.height; ++y) {
+        for (int x = 0; x < viewport.width; ++x) {
+            AnalyticScene::Expected const now =
+                scene.expect(front(), 0.3, front(), 0.3, viewport, x + 0.5, y + 0.5, 1.5);
+            AnalyticScene::Expected const before =
+                scene.expect(front(), 0, front(), 0, viewport, x + 0.5, y + 0.5, 1.5);
+            // There the lower floor was seen, and the shadow goes over it in the picture.
+            if (now.was_seen && before.was_seen && now.hit.quad == 1 && before.hit.quad == 2) {
+                ++beyond;
+                EXPECT_NEAR(shown.picture.row(y)[4 * x], 120, 2) << x << ", " << y;
+            }
+        }
+    }
+    EXPECT_GT(beyond, 30);
+}
+
 /// The number of the shadow's patches that hide what lies behind them, and the number of all its patches.
 std::pair<int, int> hiding_patches(FrameletCache const& cache, SceneTime time) {
     BodyMotions const motions;

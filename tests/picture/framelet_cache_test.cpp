@@ -12,7 +12,7 @@ namespace framelet {
 namespace {
 
 /// Bytes that FrameletCache says it holds at most for each 4x4 pixels.
-constexpr std::size_t most_bytes_per_framelet = 2450;
+constexpr std::size_t most_bytes_per_framelet = 2550;
 
 /// The batch as if from camera number `camera`, each of which is a camera of its own.
 Batch seen_from(std::uint64_t camera, Batch batch) {

@@ -21,8 +21,9 @@ public:
     }
     BodyNumber body() { return static_cast<BodyNumber>(integer(0, 2) == 0 ? integer(0, 65535) : integer(0, 2)); }
     Vec3 vector(float scale) { return {scale * number(-90, 90), scale * number(-9, 9), scale * number(-0.5f, 0.5f)}; }
+    SwingCode swing() { return static_cast<SwingCode>(integer(0, 1) == 0 ? 0 : integer(0, 255)); }
     Drift drift(bool deforms) {
-        return deforms ? Drift{vector(1), vector(5), std::max(number(-10, 2000), 0.0f)} : Drift{};
+        return deforms ? Drift{vector(1), vector(5), std::max(number(-10, 2000), 0.0f), swing()} : Drift{};
     }
     LayerDrift layer_drift(bool deforms) {
         return deforms ? LayerDrift{drift(true), vector(0.1f), vector(0.01f), vector(0.3f), vector(0.1f)}

@@ -82,6 +82,7 @@ struct FastestDrift {
 void expect_close(Drift const& in, Drift const& out, FastestDrift const& fastest) {
     EXPECT_LE(largest(in.velocity - out.velocity), fastest.velocity / 32767 + 1e-30f);
     EXPECT_LE(largest(in.acceleration - out.acceleration), fastest.acceleration / 32767 + 1e-30f);
+    EXPECT_EQ(out.swing, in.swing);
     EXPECT_GE(out.jerk, 0.999f * in.jerk);
     EXPECT_LE(out.jerk, std::max(1.0915f * in.jerk, 2e-5f));
 }

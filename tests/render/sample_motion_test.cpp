@@ -1,5 +1,7 @@
 #include "server/render/trace/sample_motion.h"
 
+#include <random>
+
 #include <gtest/gtest.h>
 
 #include "scene_builder.h"
@@ -203,6 +205,30 @@ TEST(SampleMotion, DriftsGoThroughTheTimesThatAreUsable) {
                 EXPECT_TRUE(std::isfinite(found.velocity.y + found.acceleration.y + found.jerk));
             }
         }
+    }
+}
+
+TEST(SampleMotion, WhatSwingsOrGoesRoundIsFollowedAsItDoes) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> axis(-1, 1), rate_of(0.5f, 15), phase_of(0, 6.28f);
+    for (int trial = 0; trial < 1000; ++trial) {
+        Vec3 const cosine(axis(random), axis(random), axis(random));
+        bool const is_swing = trial % 2 == 0; // to and fro, else on an ellipse
+        Vec3 const sine = is_swing ? Vec3(0) : Vec3(axis(random), axis(random), axis(random));
+        float const rate = rate_of(random), start = phase_of(random);
+        auto const place = [&](float t) {
+            return std::cos(rate * t + start) * cosine + std::sin(rate * t + start) * sine;
+        };
+        Course off;
+        std::ranges::transform(motion_seconds, off.begin(), [&](float t) { return place(t) - place(0); });
+        Drift const drift = drift_of(off, {true, true, true, true}, 1e-6f);
+        float const size = glm::length(cosine) + glm::length(sine);
+        for (float const seconds : {-0.1f, 0.02f, 0.1f, 0.2f, 0.3f}) {
+            float const missed = glm::distance(drift.after(seconds), place(seconds) - place(0));
+            float const allowed = drift.jerk * std::pow(std::abs(seconds), 3.0f) / 6;
+            EXPECT_LE(missed, 1.5f * allowed + 2e-3f * size) << "rate " << rate << ", after " << seconds;
+        }
+        EXPECT_LE(drift.jerk, 0.1f * rate * rate * rate * size + 0.01f) << "a parabola's is the rate cubed; " << rate;
     }
 }
 

@@ -25,5 +25,6 @@ void main() {
     ivec2 pixel = corner + ivec2(clamp(at.xy - vec2(corner), vec2(0.0), vec2(15.0)));
     paint(block, first_splat, int(origin.z), pixel);
     int own_group = int(texel_of(entries, int(block.y + origin.z)).z);
-    hidden = firm && group != own_group && depth >= (1.0 - same_surface) * at.z ? 1u : 0u;
+    bool is_loose = is_drifting(group) && !is_drifting(own_group) && depth > (1.0 + same_surface) * at.z;
+    hidden = firm && group != own_group && depth >= (1.0 - same_surface) * at.z && !is_loose ? 1u : 0u;
 }

@@ -13,6 +13,7 @@ const float rounding = 1e-5;
 const float hole_depth = -1.0;
 const float faded_share = 0.1;
 const int texels_of_patch = 6;
+const int drifting_bit = 1 << 30; // of groups
 const uint hides_flag = 1u, ends_flag = 2u; // of patches
 const uint outlier_flag = 1u << 16; // of entries
 
@@ -38,8 +39,18 @@ vec3 squares_of(uint sample_bytes) {
     return bytes * bytes;
 }
 
+bool is_drifting(int any_group) {
+    return any_group >= 0 && (any_group & drifting_bit) != 0;
+}
+
+// A shadow lies on no surface there, and hides nothing.
+bool shows_loose_shadow(float own_depth, float limit, int own_group) {
+    return !is_drifting(own_group) && is_drifting(group) && depth - own_depth > limit;
+}
+
 bool is_hidden(float own_depth, float tolerance, int own_group) {
-    return firm && group != own_group && depth >= (1.0 + rounding - same_surface) * own_depth - tolerance;
+    return firm && group != own_group && depth >= (1.0 + rounding - same_surface) * own_depth - tolerance &&
+           !shows_loose_shadow(own_depth, tolerance + same_surface * own_depth, own_group);
 }
 
 // Lets a candidate compete with what is in front. True where it shows.
@@ -51,7 +62,8 @@ bool merge(Candidate own, int own_group, float tolerance, uint own_leader) {
         ended = own.depth;
     }
     bool joins = shows && group == own_group && abs(own.depth - depth) <= limit;
-    bool wins = shows && ((is_firm && !firm) || (is_firm == firm && own.depth > depth + limit));
+    bool in_front = own.depth > depth + limit || shows_loose_shadow(own.depth, limit, own_group);
+    bool wins = shows && ((is_firm && !firm) || (is_firm == firm && in_front));
     if (joins) {
         color += own.color;
         weight += own.weight;

@@ -73,12 +73,13 @@ void for_each_vector(AnyDrift& drift, double side, Use const& use) {
     }
 }
 
+/// The drift whose jerk and swing are those of all samples.
 template <typename AnyDrift>
-auto& jerk_in(AnyDrift& drift) {
+auto& common_in(AnyDrift& drift) {
     if constexpr (requires { drift.corner; }) {
-        return drift.corner.jerk;
+        return drift.corner;
     } else {
-        return drift.jerk;
+        return drift;
     }
 }
 
@@ -290,7 +291,7 @@ template <class Coder>
 void ShapeModel::code_drift(Coder& coder, std::size_t count, DriftCode& last, DriftCode const& own) {
     bool const is_same =
         std::equal(own.values.begin(), own.values.begin() + static_cast<std::ptrdiff_t>(count), last.values.begin()) &&
-        own.jerk == last.jerk;
+        own.jerk == last.jerk && own.swing == last.swing;
     if (coder.bit(drifts_.is_same, is_same)) {
         return;
     }
@@ -298,6 +299,7 @@ void ShapeModel::code_drift(Coder& coder, std::size_t count, DriftCode& last, Dr
         last.values[i] = sum(last.values[i], drifts_.values[i].code(coder, difference(own.values[i], last.values[i])));
     }
     last.jerk = static_cast<JerkCode>(drifts_.jerk.code(coder, own.jerk));
+    last.swing = static_cast<SwingCode>(drifts_.swing.code(coder, own.swing));
 }
 
 /// Codes the drifts of layers and outliers, each beside the one before.
@@ -326,7 +328,8 @@ void ShapeModel::code_drifts(Coder& coder, TilePosition const& position, Shape& 
                     quantise_drift(static_cast<float>(scale) * vector[axis], units.of(is_acceleration));
             }
         });
-        own.jerk = quantise_jerk(jerk_in(carried.drift));
+        own.jerk = quantise_jerk(common_in(carried.drift).jerk);
+        own.swing = common_in(carried.drift).swing;
         code_drift(coder, count, last, own);
         if constexpr (Coder::reads) {
             count = 0;
@@ -336,7 +339,8 @@ void ShapeModel::code_drifts(Coder& coder, TilePosition const& position, Shape& 
                         static_cast<float>(last.values[count++] * unit_of(units.of(is_acceleration)) / scale);
                 }
             });
-            jerk_in(carried.drift) = jerk_of(last.jerk);
+            common_in(carried.drift).jerk = jerk_of(last.jerk);
+            common_in(carried.drift).swing = last.swing;
         }
     });
 }

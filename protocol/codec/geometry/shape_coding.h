@@ -56,12 +56,13 @@ private:
         static constexpr std::size_t of_sample = 6, of_layer = 18;
         std::array<std::int16_t, of_layer> values{};
         JerkCode jerk = 0;
+        SwingCode swing = 0;
 
         bool operator==(DriftCode const&) const = default;
     };
     struct DriftModel {
         AdaptiveBit any, is_brief, is_same;
-        AdaptiveTree<8> velocity_unit, acceleration_unit, jerk;
+        AdaptiveTree<8> velocity_unit, acceleration_unit, jerk, swing;
         std::array<AdaptiveNumber<unary>, DriftCode::of_layer> values;
     };
 

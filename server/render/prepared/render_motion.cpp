@@ -16,9 +16,6 @@ constexpr float least_shadow_step = 0.5f * motion_step;
 /// Angular speed, radians a second, above which what goes along rolls: a third of a second later it shows another
 /// side, and where a ray meets it says little of where its outline goes.
 constexpr float fast_spin = 3;
-/// Angular speed, radians a second, above which the shadow of what turns in place is not followed: it is elsewhere
-/// before it has been sent, and splits framelets of the ground for nothing (measured with sails at 8 and a fan at 5).
-constexpr float fastest_turn = 6;
 /// Metres a second from which on something goes along.
 constexpr float slowest_rolling = 0.01f;
 
@@ -108,10 +105,8 @@ void RenderScene::update_motion() {
         std::size_t const k = times.usable[1] ? 1 : 0;
         WorldPlacement const& other = instance.elsewhen[k];
         float const gone = glm::distance(other.translation, instance.translation);
-        bool const goes = gone > slowest_rolling * motion_step;
         float const turn = placement.deforms() ? 0 : turn_between({instance.linear, instance.translation}, other);
-        instance.rolls = goes && turn > fast_spin * motion_step;
-        instance.whirls = !goes && turn > fastest_turn * motion_step;
+        instance.rolls = gone > slowest_rolling * motion_step && turn > fast_spin * motion_step;
         prepared_->throws_moving_shadows = prepared_->throws_moving_shadows || throws_moving_shadow(placement);
     }
 }
@@ -123,9 +118,6 @@ bool RenderScene::throws_moving_shadow(Placement const& placement) const {
         return true;
     }
     WorldPlacement const& other = instance.elsewhen[prepared_->times.usable[1] ? 1 : 0];
-    if (instance.whirls) {
-        return false;
-    }
     return std::ranges::any_of(instance.geometries, [&](Geometry const& geometry) {
         constexpr std::size_t step = 16; // vertices: a part of them says as much
         for (std::size_t i = 0; i < geometry.positions.size(); i += step) {

@@ -52,7 +52,6 @@ struct Instance {
     bool flows = false; ///< its samples drift besides what their bodies do
     std::array<WorldPlacement, motion_times> elsewhen; ///< of what moves and does not deform, at the other times
     bool rolls = false; ///< turns fast as it goes, so that its outline goes with its origin
-    bool whirls = false; ///< turns so fast in its place that its shadow is not followed
 
     /// True where it may be elsewhere soon: carried by a body, or deforming.
     bool moves() const { return body != static_body || flows; }

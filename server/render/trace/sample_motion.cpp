@@ -32,6 +32,39 @@ Drift drift_at(PreparedScene const& scene, Instance const& instance, HitPacket c
     return drift_of(off, scene.times.usable, rounding_of(now));
 }
 
+/// The drift of this swing that was at `before` and will be at `after`, one step from now.
+Drift through(Vec3 const& before, Vec3 const& after, SwingCode swing) {
+    Drift drift;
+    drift.swing = swing;
+    drift.velocity = drift.acceleration = Vec3(1);
+    float const along = 0.5f * (drift.after(motion_step).x - drift.after(-motion_step).x);
+    float const across = 0.5f * (drift.after(motion_step).x + drift.after(-motion_step).x);
+    drift.velocity = (after - before) / (2 * along);
+    drift.acceleration = (after + before) / (2 * across);
+    return drift;
+}
+
+/// The swing of what goes x'' = -rate^2 (x - middle): second differences of three places one step apart are
+/// -2 (1 - cos(rate step)) times how far that is off the middle.
+SwingCode swing_of(Course const& off) {
+    constexpr float largest = 1.5f; // of that factor, or places a step apart say little
+    Vec3 const &before = off[0], &after = off[1], &later = off[2];
+    Vec3 const change = (later - 2.0f * after) - (after + before);
+    float const factor = -glm::dot(change, after) / std::max(glm::dot(after, after), 1e-30f);
+    return swing_code(factor > 0 && factor < largest ? std::acos(1 - 0.5f * factor) / motion_step : 0);
+}
+
+/// The jerk by which a drift misses what comes later. A cubic of some jerk adds jerk step^2 / 6 to the velocity, and
+/// after n steps misses by (n^3 - n) / 6 jerk step^3.
+float jerk_of(Drift const& drift, Course const& off, std::array<bool, motion_times> const& usable, float rounding) {
+    constexpr float step = motion_step;
+    auto const missed_by = [&](std::size_t time, float steps) {
+        float const missed = usable[time] ? glm::length(off[time] - drift.after(steps * step)) : 0.0f;
+        return missed > rounding ? 6 * missed / ((steps * steps - 1) * steps * step * step * step) : 0.0f;
+    };
+    return std::max(missed_by(2, 2), missed_by(3, 6));
+}
+
 } // namespace
 
 Course course_of(Instance const& instance, HitPacket const& hits, int lane) {
@@ -56,15 +89,13 @@ Drift drift_of(Course const& off, std::array<bool, motion_times> const& usable, 
     Vec3 const &before = off[0], &after = off[1], &later = off[2];
     Drift drift;
     if (usable[0] && usable[1]) {
-        drift.velocity = (after - before) / (2 * step);
-        drift.acceleration = (after + before) / (step * step);
-        // A cubic of this jerk adds jerk step^2 / 6 to the velocity, and after n steps misses by (n^3 - n) / 6 jerk
-        // step^3.
-        auto const jerk_of = [&](std::size_t time, float steps) {
-            float const missed = usable[time] ? glm::length(off[time] - drift.after(steps * step)) : 0.0f;
-            return missed > rounding ? 6 * missed / ((steps * steps - 1) * steps * step * step * step) : 0.0f;
-        };
-        drift.jerk = std::max(jerk_of(2, 2), jerk_of(3, 6));
+        drift = through(before, after, 0);
+        drift.jerk = jerk_of(drift, off, usable, rounding);
+        if (usable[2] && drift.jerk > 0) {
+            Drift swinging = through(before, after, swing_of(off));
+            swinging.jerk = jerk_of(swinging, off, usable, rounding);
+            drift = swinging.jerk < drift.jerk ? swinging : drift;
+        }
     } else if (usable[1] && usable[2]) {
         drift.velocity = (4.0f * after - later) / (2 * step);
         drift.acceleration = (later - 2.0f * after) / (step * step);

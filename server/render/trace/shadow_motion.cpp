@@ -59,10 +59,10 @@ struct Occluder {
     Course course{};
 };
 
-/// The shadow of what rolls goes with its origin; that of what whirls, where it stands, stays.
+/// The shadow of what rolls goes with its origin.
 Occluder occluder_of(Instance const& instance, HitPacket const& hits, int lane, Vec3 const& at) {
     Occluder occluder{at, course_of(instance, hits, lane)};
-    for (std::size_t k = 0; k < motion_times && (instance.rolls || instance.whirls); ++k) {
+    for (std::size_t k = 0; k < motion_times && instance.rolls; ++k) {
         occluder.course[k] = at + (instance.elsewhen[k].translation - instance.translation);
     }
     return occluder;

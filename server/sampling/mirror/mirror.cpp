@@ -288,14 +288,17 @@ void Mirror::cover(Moment const& moment, std::size_t index) {
 void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new) {
     ReprojectedPiece const& reprojected = moment.reprojected[index];
     Cell& cell = cells_[index_of(column, row)];
-    cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
     if (is_new && moment.is_of_camera) {
         cell.is_wrong = false;
         cell.stale = 0;
     }
     if (reprojected.is_lost) { // however little of it shows
         cell.stale = std::max(cell.stale, lost_error);
+        if (moment.pieces[index].is_outlier && &moment != &moments_[base_]) {
+            return; // a viewer leaves it out
+        }
     }
+    cell.covered = static_cast<std::uint16_t>(cell.covered | mask);
     Vec2 const middle((static_cast<float>(column) + 0.5f) * cell_side, (static_cast<float>(row) + 0.5f) * cell_side);
     Vec2 const from = glm::clamp(middle - reprojected.at, -reprojected.half_side, reprojected.half_side);
     float const w = std::max(reprojected.inverse_depth + glm::dot(reprojected.depth_slope, from), 0.0f);
@@ -336,7 +339,7 @@ bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected
     float const difference = inverse_depth - cell.inverse_depth;
     float const limit = same_surface * std::max(inverse_depth, cell.inverse_depth) + reprojected.tolerance;
     if (std::abs(difference) > limit) {
-        return difference > 0;
+        return reprojected.leads == cell.leads ? difference > 0 : cell.leads; // a shadow lies on what it darkens
     }
     if (reprojected.is_outdated != cell.is_outdated) {
         return cell.is_outdated;

@@ -68,6 +68,7 @@ struct OutlierSum : Sum {
         drift.velocity += sample.drift.velocity;
         drift.acceleration += sample.drift.acceleration;
         drift.jerk = std::max(drift.jerk, sample.drift.jerk);
+        drift.swing = sample.drift.swing;
         body = sample.body;
     }
 };
@@ -107,7 +108,7 @@ void put_on(Layer const& layer, Vec2 corner, Piece& piece) {
 
 void put_on(OutlierSum const& sum, Piece& piece) {
     piece.inverse_depth = sum.inverse_depth / sum.count;
-    piece.drift = {sum.drift.velocity / sum.count, sum.drift.acceleration / sum.count, sum.drift.jerk};
+    piece.drift = {sum.drift.velocity / sum.count, sum.drift.acceleration / sum.count, sum.drift.jerk, sum.drift.swing};
     piece.body = sum.body;
     piece.is_outlier = true;
 }

@@ -18,7 +18,7 @@ constexpr float most_pixels = 1e6f, most_scale = 1e6f;
 /// neighbours would count as holes.
 constexpr float margin = 0.5f;
 /// Seconds of scene time until what is rendered next shows: until then a shadow must go on leading.
-constexpr float renewal_seconds = 0.2f;
+constexpr float renewal_seconds = 0.1f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
 

@@ -27,6 +27,9 @@ constexpr float most_followed_seconds = 0.8f;
 /// would show it for longer.
 constexpr float brief_seconds = 0.2f;
 
+/// Radians a second above which shadows that are too thin for a layer are not carried on: they would be dots.
+constexpr float fastest_thin_swing = 6;
+
 /// Samples that may share a layer: of one body, of shadows that pass, or the sky.
 struct Group {
     BodyNumber body = static_body;
@@ -96,6 +99,7 @@ private:
     void agree_on_drift(Group const& group);
     void fit_drift();
     void drop_useless_drift();
+    SwingCode common_swing() const;
     float jerk_for(float seconds) const;
     void add_found(std::size_t group);
     void add_layer(GridPlane const& plane, float half_width, Group const& group);
@@ -261,12 +265,16 @@ void Fitter::agree_on_drift(Group const& group) {
             break;
         }
     }
+    drift_.corner.swing = common_swing();
+    float const square = swing_rate(drift_.corner.swing) * swing_rate(drift_.corner.swing);
     // Nine in ten have no more jerk: a sample at a joint does not shorten the life of all.
     std::array<float, framelet_samples> jerks;
     auto end = jerks.begin();
     for (int i = 0; i < framelet_samples; ++i) {
         if (is_member(i)) {
-            *end++ = drift_of(framelet_, i).jerk;
+            Drift const own = drift_of(framelet_, i);
+            float const rate = swing_rate(own.swing);
+            *end++ = own.jerk + std::abs(rate * rate - square) * glm::length(own.velocity);
         }
     }
     if (end != jerks.begin()) {
@@ -280,6 +288,20 @@ void Fitter::agree_on_drift(Group const& group) {
             drift_.corner.jerk = std::max(drift_.corner.jerk, jerk_for(most_followed_seconds));
         }
     }
+}
+
+/// The middle one of the swings of the members.
+SwingCode Fitter::common_swing() const {
+    std::array<SwingCode, framelet_samples> swings{};
+    auto end = swings.begin();
+    for (int i = 0; i < framelet_samples; ++i) {
+        if (is_member(i)) {
+            *end++ = drift_of(framelet_, i).swing;
+        }
+    }
+    auto const middle = swings.begin() + (end - swings.begin()) / 2;
+    std::nth_element(swings.begin(), middle, end);
+    return *middle;
 }
 
 /// The jerk of which the framelet's nearest samples are followed for so long.
@@ -402,9 +424,15 @@ void Fitter::collect() {
             shape_.layer_of[block * block_samples + i] = layer_of_[i * grid_blocks + block];
         }
     }
+    bool const any_shadow = std::ranges::any_of(shape_.layers, [](Layer const& layer) {
+        return is_shadow(layer.body, layer.drift); // those beyond the last one are empty
+    });
     for (int i = 0; i < framelet_samples; ++i) {
         if (shape_.layer_of[static_cast<std::size_t>(i)] == FrameletShape::outlier) {
-            shape_.outliers.push_back({values_[block_order(i)], body_of(framelet_, i), drift_of(framelet_, i)});
+            BodyNumber const body = body_of(framelet_, i);
+            Drift const drift = drift_of(framelet_, i);
+            bool const is_thin = !any_shadow && is_shadow(body, drift) && swing_rate(drift.swing) > fastest_thin_swing;
+            shape_.outliers.push_back({values_[block_order(i)], body, is_thin ? Drift{} : drift});
         }
     }
 }
