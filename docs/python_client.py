@@ -80,7 +80,7 @@ def paint(framelets, width, height):
 def look(host, port, token, width, height):
     """Numbers of batches and framelets by tile code, once the picture is as good as it gets or ten seconds are over."""
     with socket.create_connection((host, port), 10) as connection, connection.makefile("rb") as stream:
-        send(connection, Body.Body.Hello, filled(Hello.HelloT(), version=6, token=token, codings=1))
+        send(connection, Body.Body.Hello, filled(Hello.HelloT(), version=7, token=token, codings=1))
         welcome = receive(stream)
         viewport = filled(Viewport.ViewportT(), width=width, height=height)
         view = filled(View.ViewT(), number=1, camera=welcome.startCamera, viewport=viewport, heldSince=1)

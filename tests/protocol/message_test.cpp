@@ -72,9 +72,9 @@ TEST(Message, AppendsBehindWhatIsThere) {
 TEST(Message, GoldenHello) {
     // The example of PROTOCOL.md.
     Bytes const golden = from_hex("10000000 46524d4c 08000c00 07000800 08000000 00000001 0c000000 08000c00"
-                                  "06000800 08000000 00000600 04000000 06000000 73656372 65740000");
-    EXPECT_EQ(to_hex(encode_message(Hello{6, "secret"})), to_hex(golden));
-    EXPECT_TRUE(same(decode_message(golden), Hello{6, "secret"}));
+                                  "06000800 08000000 00000700 04000000 06000000 73656372 65740000");
+    EXPECT_EQ(to_hex(encode_message(Hello{7, "secret"})), to_hex(golden));
+    EXPECT_TRUE(same(decode_message(golden), Hello{7, "secret"}));
 }
 
 TEST(Message, GoldenHelloOfOneThatComesBack) {
