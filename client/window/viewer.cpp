@@ -253,7 +253,7 @@ void Viewer::say(std::string note, double seconds) {
 /// Begins to connect to a server that the user has named.
 void Viewer::try_server(NamedServer const& server) {
     try {
-        attempts_.emplace(options_for_(server));
+        attempts_.emplace(options_for_(server), true);
         opener_.give_up(); // the newest wish counts
     } catch (InputError const& error) {
         say(error.what(), long_note_seconds);
@@ -376,7 +376,8 @@ OverlayContent Viewer::overlay_content() {
         out.message = "waiting for the first picture ...";
     }
     if (!lost_.empty() && !out.asks_trust) {
-        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers};
+        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers,
+                       attempts_ ? attempts_->field_at_fault() : ServerField::none};
     }
     return out;
 }

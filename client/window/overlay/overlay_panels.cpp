@@ -146,9 +146,12 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     };
     ImGui::Separator();
     label("server:");
-    if (field.takes_keys && ImGui::IsWindowAppearing()) {
-        ImGui::SetKeyboardFocusHere();
-    }
+    auto const give_keys = [&](ServerField to) {
+        if (field.takes_keys == to && frame.had_keys != to) {
+            ImGui::SetKeyboardFocusHere();
+        }
+    };
+    give_keys(ServerField::address);
     bool entered = text_field("##address", typed.address, 0, frame);
     tooltip("HOST or HOST:PORT, where framelet-server listens");
     ImGui::SameLine();
@@ -161,6 +164,7 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     tooltip(field.always_tls ? "the command line says so"
                              : "encrypt the connection, as servers beyond this machine ask");
     label("token:");
+    give_keys(ServerField::token);
     entered = text_field("##token", typed.token, ImGuiInputTextFlags_Password, frame) || entered;
     tooltip(
         "what the server's --token-file has. Empty: as on the command line, and none on the same machine as the same "
@@ -171,7 +175,8 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     }
     for (std::string const& address : field.recent) {
         if (ImGui::SmallButton(address.c_str())) {
-            frame.actions.server = {address, typed.token};
+            typed.address = address;
+            frame.actions.server = typed;
         }
         tooltip("connect to it as before");
     }
