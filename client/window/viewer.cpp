@@ -334,7 +334,7 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
     }
     auto const name = [](std::vector<std::string> const& names, int number) {
         return number >= 0 && number < static_cast<int>(names.size()) ? names[static_cast<std::size_t>(number)]
-                                                                      : std::string("free camera");
+                                                                      : std::string(free_camera_text);
     };
     out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
                                      : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);

@@ -132,7 +132,8 @@ void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
 /// Draws the bar's menu of what one can look through.
 void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     float const font = ImGui::GetFontSize();
-    float const width = std::clamp(ImGui::GetIO().DisplaySize.x / 10, 5 * font, 9 * font);
+    float const least = ImGui::CalcTextSize(free_camera_text).x + 2 * ImGui::GetStyle().FramePadding.x;
+    float const width = std::max(std::min(ImGui::GetIO().DisplaySize.x / 10, 9 * font), least);
     if (ImGui::Button((menu.current + "###camera").c_str(), ImVec2(width, 0))) {
         ImGui::OpenPopup("cameras");
     }
@@ -145,7 +146,7 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     if (frame.closes_menu) {
         ImGui::CloseCurrentPopup();
     }
-    if (ImGui::Selectable("free camera")) {
+    if (ImGui::Selectable(free_camera_text)) {
         frame.actions.commands.push_back(Command::free_camera);
     }
     tooltip(tip_of(Command::free_camera));

@@ -137,6 +137,17 @@ bool text_field(char const* name, std::string& text, ImGuiInputTextFlags flags, 
     return entered;
 }
 
+/// Of a window along the lower edge, as the bar is, the next tooltip stands above it: below the pointer it would lie
+/// over the buttons beside.
+void place_tooltip() {
+    ImVec2 const display = ImGui::GetIO().DisplaySize;
+    ImVec2 const window = ImGui::GetWindowPos();
+    if (window.x == 0 && window.y + ImGui::GetWindowHeight() >= display.y) {
+        float const place = std::clamp(ImGui::GetMousePos().x / display.x, 0.0f, 1.0f);
+        ImGui::SetNextWindowPos(ImVec2(place * display.x, window.y), ImGuiCond_Always, ImVec2(place, 1));
+    }
+}
+
 void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFrame& frame) {
     float const begin = ImGui::GetCursorPosX() + ImGui::CalcTextSize("server: ").x;
     auto const label = [begin](char const* text) {
@@ -195,6 +206,7 @@ void take_area(OverlayFrame& frame) {
 
 void tooltip(std::string const& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        place_tooltip();
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // the tooltip is not as pale as what cannot be used
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(36 * ImGui::GetFontSize());
