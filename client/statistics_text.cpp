@@ -35,6 +35,7 @@ std::string statistics_json(ClientStatistics const& s, RunFigures const& run) {
         {"width", run.viewport.width},
         {"height", run.viewport.height},
         {"seconds", s.seconds},
+        {"scene_seconds", run.scene_seconds},
         {"frames", run.frames},
         {"late_frames", run.late_frames},
         {"pictures", s.pictures},
@@ -89,7 +90,8 @@ std::string statistics_summary(ClientStatistics const& s, RunFigures const& run)
     out << "details\n"
         << "  frames            " << run.frames << " shown, " << run.late_frames << " late, " << s.pictures
         << " changed; full " << after(s.full_picture_seconds) << "\n"
-        << "  round trip        "
+        << "  clock             " << std::setprecision(2) << run.scene_seconds << " s of the scene, at the last frame\n"
+        << std::setprecision(1) << "  round trip        "
         << (s.round_trip_seconds < 0
                 ? "not measured"
                 : milliseconds(s.round_trip_seconds) + ", least " + milliseconds(s.least_round_trip_seconds))

@@ -15,6 +15,7 @@ struct RunFigures {
     std::uint64_t late_frames = 0; ///< shown more than one frame's time too late
     double photon_seconds = -1; ///< motion to photon, median of the pictures that show something newer; -1: none did
     double still_difference = -1; ///< of `SheetMoments::difference`; -1: there are no stills
+    SceneTime scene_seconds = 0; ///< what the scene's clock stood at when the last frame was shown
     double converged_seconds = -1; ///< from the start until everything had arrived; -1: not seen
 };
 

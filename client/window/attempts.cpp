@@ -3,6 +3,7 @@
 #include <thread>
 #include <utility>
 
+#include "client/core/connection/token_refusal.h"
 #include "client/window/window.h"
 #include "common/error.h"
 #include "common/program_line.h"
@@ -24,13 +25,22 @@ std::string Attempts::message() const {
                "\n\nTrust it if the server printed the same at its start. No token has been sent.";
     }
     return (is_refused_ ? "cannot connect to " + server : "waiting for " + server + " ...") + "\n\n" + failure_ +
-           "\n\nR or Enter: try now     Ctrl+Q: quit";
+           (field_at_fault() == ServerField::none ? "\n\nR or Enter: try now" : "\n\nEnter: try now") +
+           "     Ctrl+Q: quit";
+}
+
+ServerField Attempts::field_at_fault() const {
+    return !has_failed() || unknown_ ? ServerField::none
+           : is_token_wrong_         ? ServerField::token
+           : is_typed_               ? ServerField::address
+                                     : ServerField::none;
 }
 
 void Attempts::hurry() {
     back_off_.reset();
     next_ = Clock::now();
     is_refused_ = false;
+    is_token_wrong_ = false;
     unknown_.reset();
 }
 
@@ -39,7 +49,7 @@ void Attempts::trust() {
         std::exchange(unknown_, std::nullopt).value().trust();
         hurry();
     } catch (InputError const& error) {
-        note(error.what());
+        note(error.what(), error.what());
     }
 }
 
@@ -61,14 +71,24 @@ std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
     } catch (UnknownCertificate const& unknown) {
         is_refused_ = true;
         unknown_ = unknown;
-        note(unknown.what());
+        note(unknown.what(), "no authority vouches for the certificate of the server at " + unknown.server +
+                                 ", and it is new here. Its SHA-256 fingerprint is " + unknown.fingerprint +
+                                 ": the window asks whether to trust it");
+    } catch (TokenRefusal const& refusal) {
+        is_refused_ = true;
+        is_token_wrong_ = true;
+        if (is_refusal_fatal) {
+            throw;
+        }
+        note(refusal.complaint + ": type it below", refusal.complaint + ": the window asks for it");
     } catch (std::exception const& error) {
         is_refused_ = dynamic_cast<ConnectionError const*>(&error) == nullptr ||
                       dynamic_cast<ConnectionRefusal const*>(&error) != nullptr; // else it may help to try again
         if (is_refused_ && is_refusal_fatal) {
             throw;
         }
-        note(error.what());
+        is_token_wrong_ = false;
+        note(error.what(), error.what());
     }
     if (!is_refused_) {
         auto const pause = std::chrono::duration<double>(back_off_.next(std::generate_canonical<double, 32>(random_)));
@@ -77,10 +97,10 @@ std::unique_ptr<ClientCore> Attempts::poll(bool is_refusal_fatal) {
     return nullptr;
 }
 
-void Attempts::note(std::string const& failure) {
+void Attempts::note(std::string const& failure, std::string const& line) {
     if (failure_ != failure) {
         failure_ = failure;
-        print_line("framelet-viewer", failure_ + (is_refused_ ? "" : "; waiting for it"));
+        print_line("framelet-viewer", line + (is_refused_ ? "" : "; waiting for it"));
     }
 }
 

@@ -12,6 +12,7 @@
 #include "client/core/client_core.h"
 #include "client/core/connection/back_off.h"
 #include "client/core/connection/unknown_certificate.h"
+#include "client/window/overlay/overlay_content.h"
 
 namespace framelet {
 
@@ -22,12 +23,16 @@ std::unique_ptr<ClientCore> connect_for_window(ConnectionOptions const& options)
 /// not help, is tried once. An attempt that is given up is not waited for: its thread ends by itself.
 class Attempts {
 public:
-    explicit Attempts(ConnectionOptions options) : options_(std::move(options)) {}
+    /// `is_typed`: the user has just named the server.
+    explicit Attempts(ConnectionOptions options, bool is_typed = false)
+        : options_(std::move(options)), is_typed_(is_typed) {}
 
     ConnectionOptions const& options() const { return options_; }
     bool has_failed() const { return !failure_.empty(); } ///< at least once
     /// Text for the user, with the keys that `hurry` is for, or the question below.
     std::string message() const;
+    /// The field to be typed into after a failure: it takes the keys.
+    ServerField field_at_fault() const;
     /// True where the user is to say whether the server's certificate is to be trusted: then `trust`, or no more
     /// attempts.
     bool asks_trust() const { return unknown_.has_value(); }
@@ -42,12 +47,15 @@ public:
 
 private:
     using Clock = std::chrono::steady_clock;
-    void note(std::string const& failure);
+    /// `line`: what the terminal is told of it.
+    void note(std::string const& failure, std::string const& line);
 
     ConnectionOptions options_;
+    bool is_typed_;
     std::future<std::unique_ptr<ClientCore>> attempt_;
     std::string failure_; ///< of the last attempt; empty: none has ended
     std::optional<UnknownCertificate> unknown_; ///< what the last attempt has met
+    bool is_token_wrong_ = false; ///< the last attempt was refused for it
     bool is_refused_ = false; ///< no other attempt follows by itself
     BackOff back_off_;
     std::minstd_rand random_{std::random_device{}()};

@@ -49,7 +49,7 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
     int frames = 1; // still to be drawn; what the mouse presses is seen in one, what it releases in the next
     auto const try_server = [&](NamedServer const& server) {
         try {
-            attempts.emplace(options_for(server));
+            attempts.emplace(options_for(server), true);
             is_from_command_line = false;
             complaint.clear();
         } catch (InputError const& error) {
@@ -94,7 +94,10 @@ Connection run_start_panel(Window& window, Start const& start, OptionsFor const&
         if (!content.message.empty() && !content.asks_trust &&
             (!attempts || attempts->has_failed() || !is_from_command_line)) {
             content.address = {with_tls(start.address.value_or(usual_server), start.always_tls), start.recent,
-                               !attempts && !opener.can_reopen(), start.always_tls};
+                               attempts              ? attempts->field_at_fault()
+                               : opener.can_reopen() ? ServerField::none
+                                                     : ServerField::address,
+                               start.always_tls};
         }
         // A field that is new takes the keys after its first frame.
         frames = content != shown ? std::max(frames, 3) : frames;

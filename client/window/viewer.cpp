@@ -253,7 +253,7 @@ void Viewer::say(std::string note, double seconds) {
 /// Begins to connect to a server that the user has named.
 void Viewer::try_server(NamedServer const& server) {
     try {
-        attempts_.emplace(options_for_(server));
+        attempts_.emplace(options_for_(server), true);
         opener_.give_up(); // the newest wish counts
     } catch (InputError const& error) {
         say(error.what(), long_note_seconds);
@@ -334,7 +334,7 @@ CameraMenu Viewer::camera_menu(Welcome const& welcome) const {
     }
     auto const name = [](std::vector<std::string> const& names, int number) {
         return number >= 0 && number < static_cast<int>(names.size()) ? names[static_cast<std::size_t>(number)]
-                                                                      : std::string("free camera");
+                                                                      : std::string(free_camera_text);
     };
     out.current = scene_camera_ >= 0 ? name(out.scene_cameras, scene_camera_)
                                      : name(out.bookmarks, is_at_bookmark_ ? bookmark_ : -1);
@@ -376,7 +376,8 @@ OverlayContent Viewer::overlay_content() {
         out.message = "waiting for the first picture ...";
     }
     if (!lost_.empty() && !out.asks_trust) {
-        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers};
+        out.address = {opener_.has_open() ? usual_server : connection_.server_name(), memory_.servers,
+                       attempts_ ? attempts_->field_at_fault() : ServerField::none};
     }
     return out;
 }

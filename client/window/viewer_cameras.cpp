@@ -32,7 +32,7 @@ void Viewer::leave_scene_camera() {
     if (scene_camera_ >= 0) {
         scene_camera_ = -1;
         controller_->set_camera(core_->shown_camera());
-        say("free camera");
+        say(free_camera_text);
     }
 }
 
@@ -148,8 +148,13 @@ void Viewer::copy_camera(bool saves) {
 }
 
 void Viewer::paste_camera() {
+    std::string const text = window_.clipboard();
+    if (std::string lacks = clipboard_lacks(text); !lacks.empty()) {
+        say(std::move(lacks));
+        return;
+    }
     try {
-        take_camera(parse_camera_path(window_.clipboard(), "of the clipboard"));
+        take_camera(parse_camera_path(text, "of the clipboard"));
     } catch (InputError const& failure) {
         say(failure.what(), long_note_seconds);
     }

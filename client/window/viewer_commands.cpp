@@ -68,6 +68,9 @@ void Viewer::take_pivot(WindowInput const& input) {
     Viewport const window = window_.framebuffer_size();
     grabbed_ = core_->point_at(*place * Vec2(static_cast<float>(picture_.width) / static_cast<float>(window.width),
                                              static_cast<float>(picture_.height) / static_cast<float>(window.height)));
+    if (grabbed_ && !controller_->can_hold(present_camera(), *grabbed_)) {
+        grabbed_.reset();
+    }
     if (!input.focused) {
         return;
     }

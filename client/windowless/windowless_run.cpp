@@ -166,14 +166,15 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
         if (news && statistics.photon_seconds >= 0) {
             photon_seconds.push_back(statistics.photon_seconds);
         }
+        run.scene_seconds = core.clock().time;
         if (log != nullptr) {
-            log->add({run.frames, unix_seconds(), core.clock().time, news, core.is_complete(), statistics.bytes,
+            log->add({run.frames, unix_seconds(), run.scene_seconds, news, core.is_complete(), statistics.bytes,
                       cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - cpu_seconds_of_sinks(sinks), statistics.samples,
                       statistics.photon_seconds, scene_camera, camera, welcome.scene_origin});
         }
         if (sheet != nullptr) {
             sheet->note(seconds_since(start), picture,
-                        {camera, scene_camera, std::max(core.clock().time - statistics.lag_seconds, 0.0)});
+                        {camera, scene_camera, std::max(run.scene_seconds - statistics.lag_seconds, 0.0)});
         }
         ++run.frames;
         if (!sinks.empty()) {
@@ -185,7 +186,7 @@ RunFigures show(ClientCore& core, WindowlessOptions const& options, std::optiona
             bool const fades = draws && core.overlay_fades();
             bool const differs = news || fades || faded;
             faded = fades;
-            ShownFrame const frame{draws ? overlaid : picture, differs, choice.takes(core.clock().time),
+            ShownFrame const frame{draws ? overlaid : picture, differs, choice.takes(run.scene_seconds),
                                    seconds_since(start)};
             for (std::unique_ptr<FrameSink> const& sink : sinks) {
                 sink->show(frame);

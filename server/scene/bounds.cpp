@@ -6,6 +6,14 @@
 
 namespace framelet {
 
+namespace {
+
+bool takes_light(Material const& material) {
+    return !material.unlit && Vec3(material.base_color) != Vec3(0);
+}
+
+} // namespace
+
 Camera scene_camera(Scene const& scene, ScenePose const& pose, Index index) {
     SceneCamera const& from = scene.cameras[static_cast<std::size_t>(index)];
     Mat4 const& world = pose.world_from_node[static_cast<std::size_t>(from.node)];
@@ -20,8 +28,8 @@ Camera scene_camera(Scene const& scene, ScenePose const& pose, Index index) {
     return within_bounds(camera); // an animation may lead anywhere
 }
 
-Bounds scene_bounds(Scene const& scene, ScenePose const& pose) {
-    Bounds bounds;
+std::vector<ScenePart> scene_parts(Scene const& scene, ScenePose const& pose) {
+    std::vector<ScenePart> out;
     DeformedVertices deformed;
     for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
         Node const& node = scene.nodes[i];
@@ -35,10 +43,24 @@ Bounds scene_bounds(Scene const& scene, ScenePose const& pose) {
                 deform(primitive, pose.morph_weights[i], skin, pose, deformed);
             }
             Mat4 const world = skin ? Mat4(1) : pose.world_from_node[i];
+            Bounds box;
             for (Vec3 const& position : rigid ? primitive.positions : deformed.positions) {
-                bounds.include(Vec3(world * Vec4(position, 1)));
+                box.include(Vec3(world * Vec4(position, 1)));
+            }
+            if (!box.empty()) {
+                auto const material = static_cast<std::size_t>(primitive.material);
+                out.push_back({box, material >= scene.materials.size() || takes_light(scene.materials[material])});
             }
         }
+    }
+    return out;
+}
+
+Bounds scene_bounds(Scene const& scene, ScenePose const& pose) {
+    Bounds bounds;
+    for (ScenePart const& part : scene_parts(scene, pose)) {
+        bounds.include(part.box.lower);
+        bounds.include(part.box.upper);
     }
     return bounds;
 }

@@ -4,6 +4,7 @@
 
 #include <spdlog/spdlog.h>
 
+#include "protocol/messages/wrong_token.h"
 #include "protocol/stream/token.h"
 
 namespace framelet {
@@ -39,7 +40,7 @@ std::optional<Failure> Admission::refusal(Hello const& hello, std::string const&
             spdlog::warn("wrong token from {}{}", source, *more);
         }
     }
-    return Failure{"wrong or missing token: start the viewer with --token-file"};
+    return Failure{wrong_token_text};
 }
 
 std::shared_ptr<Session> Admission::session_left_behind(Hello const& hello) {

@@ -1,6 +1,7 @@
 #include "server/session/welcome.h"
 
 #include "framelet_version.h"
+#include "server/scene/backdrop.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/summary/scene_identity.h"
 
@@ -11,7 +12,7 @@ Welcome make_welcome(Scene const& scene, std::span<Index const> clips) {
     Welcome welcome;
     welcome.server = "framelet-server " FRAMELET_VERSION;
     welcome.scene_name = scene.name;
-    welcome.scene_bounds = scene_bounds(scene, pose);
+    welcome.scene_bounds = without_backdrop(scene_parts(scene, pose));
     for (Index i = 0; i < static_cast<Index>(scene.cameras.size()); ++i) {
         welcome.cameras.push_back({scene.cameras[static_cast<std::size_t>(i)].name, scene_camera(scene, pose, i)});
     }

@@ -154,6 +154,35 @@ TEST_P(CameraControllerOfSize, WhatNoPivotCanBeIsNone) {
     EXPECT_EQ(controller.pivot(), before);
 }
 
+TEST_P(CameraControllerOfSize, FitDoesNotLeadIntoTheGround) {
+    float const size = GetParam();
+    Bounds ground;
+    ground.include(Vec3(-0.5f, 0, -0.5f) * size);
+    ground.include(Vec3(0.5f, 0.01f, 0.5f) * size);
+    Camera home = look_at(Vec3(0, 0.02f, 0.3f) * size, Vec3(0, 0.05f, 0) * size, Vec3(0, 1, 0), 0.8f);
+    CameraController controller(home, ground);
+    controller.fit(viewport, 40);
+    EXPECT_GT(controller.camera().position.y, 0);
+    EXPECT_NEAR(controller.camera().right().y, 0, 1e-3f);
+    controller.look_along({0, 1, 0}, {0, 0, 1});
+    controller.fit(viewport, 40);
+    EXPECT_LT(controller.camera().position.y, 0) << "who wants to look from below does";
+}
+
+TEST_P(CameraControllerOfSize, WhatLiesBehindAllOfTheSceneIsNotTakenHoldOf) {
+    float const size = GetParam();
+    Stage const stage(size);
+    CameraController const controller(stage.home, stage.scene);
+    Camera amid = stage.home;
+    amid.position = {0, 0, 0};
+    for (Camera const& camera : {stage.home, amid}) {
+        Vec3 const corner = Vec3(0.5f, -0.5f, -0.5f) * stage.scene.size();
+        EXPECT_TRUE(controller.can_hold(camera, corner));
+        EXPECT_FALSE(controller.can_hold(camera, camera.position + 3 * size * camera.forward())) << "as a sky does";
+    }
+    EXPECT_TRUE(CameraController(stage.home, {}).can_hold(stage.home, stage.home.position + stage.home.forward()));
+}
+
 TEST_P(CameraControllerOfSize, FocusTurnsToThePointAndGoesHalfOfTheWay) {
     float const size = GetParam();
     Stage const stage(size);

@@ -28,6 +28,10 @@ TEST(Lacks, WhatIsThereIsNotLacking) {
     EXPECT_NE(confidence_lacks(false).find("F4"), std::string::npos);
     EXPECT_EQ(picture_lacks(true), "");
     EXPECT_NE(picture_lacks(false), "");
+    EXPECT_EQ(clipboard_lacks(" {\"position\": [0, 0, 0]"), "") << "what it lacks of a camera file is said by line";
+    for (char const* const text : {"", " \n", "some words", "[1, 2]"}) {
+        EXPECT_EQ(clipboard_lacks(text), "the clipboard holds no camera") << text;
+    }
 }
 
 TEST(Lacks, TheHelpSaysWhyTheClocksKeysDoNothing) {

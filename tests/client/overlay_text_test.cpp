@@ -64,9 +64,9 @@ TEST(OverlayText, TheSignSaysThatAConnectionIsTriedForAgain) {
 }
 
 TEST(OverlayText, ClockAndStatisticsReadWell) {
-    EXPECT_EQ(clock_text({{12.345, true, 2}, 5}), "2.35 of 5.00 s, playing at 2x") << "as the bar has it";
-    EXPECT_EQ(clock_text({{0, false, 0.5f}, 5}), "0.00 of 5.00 s, paused at 0.5x");
-    EXPECT_EQ(clock_text({{3, true, 1}, 5}), "3.00 of 5.00 s, playing");
+    EXPECT_EQ(clock_text({{12.346, true, 2}, 5}), "12.35 s (every 5.00 s), playing at 2x") << "as the bar has it";
+    EXPECT_EQ(clock_text({{0, false, 0.5f}, 5}), "0.00 s (every 5.00 s), paused at 0.5x");
+    EXPECT_EQ(clock_text({{3, true, 1}, 5}), "3.00 s (every 5.00 s), playing");
     EXPECT_EQ(clock_text({{3, true, 1}, 0}), "nothing moves in this scene");
     ClientStatistics statistics;
     statistics.samples = 1000;
@@ -75,7 +75,7 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     TimeLine const time{{}, 4};
     TextRows const rows = figure_rows(statistics, time, true);
     EXPECT_EQ(value_of(rows, "done"), "coarse, 0% known");
-    EXPECT_EQ(value_of(rows, "clock"), "0.00 of 4.00 s, paused");
+    EXPECT_EQ(value_of(rows, "clock"), "0.00 s (every 4.00 s), paused");
     TextRows const details = detail_rows(statistics, RateMeter(), {640, 360}, "processor");
     EXPECT_EQ(value_of(details, "picture"), "640x360");
     EXPECT_EQ(value_of(details, "received"), "1 batch, 0 framelets, 0.25 B/sample");
@@ -86,7 +86,7 @@ TEST(OverlayText, ClockAndStatisticsReadWell) {
     EXPECT_EQ(value_of(figure_rows(statistics, time, true), "done"), "refining, 100% known");
     statistics.converged = true;
     TextRows const late = figure_rows(statistics, time, true);
-    EXPECT_EQ(value_of(late, "clock"), "0.00 of 4.00 s, paused; the scene 100 ms late");
+    EXPECT_EQ(value_of(late, "clock"), "0.00 s (every 4.00 s), paused; the scene 100 ms late");
     EXPECT_EQ(value_of(late, "done"), "finished");
 }
 

@@ -22,7 +22,7 @@ TEST(ServerAddress, IsReadAsWritten) {
 
 TEST(ServerAddress, IsTakenOutOfAUrl) {
     for (char const* const text : {"http://host:80", "https://host:80/", "http://me@host:80/scene?x=1#y", "host:80/a:b",
-                                   " host:80\n", "me@host:80", "framelet://host:80"}) {
+                                   " host:80\n", "me@host:80", "framelet://host:80", "HTTP://host:80"}) {
         EXPECT_EQ(parse_server_address(text), (ServerAddress{"host", 80})) << text;
     }
     EXPECT_EQ(parse_server_address("http://host/"), (ServerAddress{"host", default_port}));
@@ -32,7 +32,7 @@ TEST(ServerAddress, IsTakenOutOfAUrl) {
 }
 
 TEST(ServerAddress, AUrlMaySayThatItIsEncrypted) {
-    for (char const* const text : {"tls://host:80", "https://host:80/", " tls://host:80"}) {
+    for (char const* const text : {"tls://host:80", "https://host:80/", " tls://host:80", "TLS://host:80"}) {
         EXPECT_TRUE(asks_for_tls(text)) << text;
         EXPECT_EQ(parse_server_address(text), (ServerAddress{"host", 80})) << text;
         EXPECT_EQ(with_tls(text, true), text);
@@ -51,10 +51,10 @@ TEST(ServerAddress, AUrlMaySayThatItIsEncrypted) {
 }
 
 TEST(ServerAddress, AnythingElseIsRefused) {
-    for (char const* const text :
-         {"",         ":",        "host:", ":7070", "host:0", "host:65536", "host:7070x",  "host:-1",
-          "a b:7070", "::1:7070", "::x",   "[::1",  "[::1]:", "[]",         "[::1]x:7070", "[]:7070",
-          "host:+5",  "http://",  "me@",   "/host"}) {
+    for (char const* const text : {"",           ":",       "host:",       ":7070",         "host:0",     "host:65536",
+                                   "host:7070x", "host:-1", "a b:7070",    "::1:7070",      "::x",        "[::1",
+                                   "[::1]:",     "[]",      "[::1]x:7070", "[]:7070",       "host:+5",    "http://",
+                                   "me@",        "/host",   "ftp://host",  "ssh://host:80", "t ls://host"}) {
         EXPECT_THROW(parse_server_address(text), InputError) << text;
     }
 }

@@ -17,9 +17,11 @@ TEST(StatisticsText, JsonHoldsTheFiguresAndNullForWhatWasNotReached) {
     run.scene = "a \"scene\" \xff"; // not UTF-8
     run.viewport = {64, 48};
     run.frames = 7;
+    run.scene_seconds = 9.25;
     auto const json = nlohmann::json::parse(statistics_json(statistics, run));
     EXPECT_EQ(json.at("width"), 64);
     EXPECT_EQ(json.at("frames"), 7);
+    EXPECT_EQ(json.at("scene_seconds"), 9.25) << "as the last line of --frames has it";
     EXPECT_DOUBLE_EQ(json.at("bytes_per_sample"), 0.25);
     EXPECT_DOUBLE_EQ(json.at("reconstruct_ns_per_pixel"), 3);
     EXPECT_DOUBLE_EQ(json.at("coverage"), 0.5);

@@ -1,24 +1,22 @@
 #include "client/window/overlay/time_line.h"
 
+#include <utility>
+
 #include <gtest/gtest.h>
 
 namespace framelet {
 namespace {
 
-TEST(TimeLine, AnimationsBeginAnewAtTheirEnd) {
-    EXPECT_DOUBLE_EQ((TimeLine{{3, true, 1}, 4}.place()), 3);
-    EXPECT_DOUBLE_EQ((TimeLine{{4, true, 1}, 4}.place()), 0);
-    EXPECT_DOUBLE_EQ((TimeLine{{13.5, true, 1}, 4}.place()), 1.5);
-    EXPECT_EQ((TimeLine{{13.5, true, 1}, 0}.place()), 0) << "nothing moves";
-}
-
-TEST(TimeLine, SeekingStaysInTheRound) {
-    TimeLine const line{{13.5, true, 1}, 4};
-    EXPECT_DOUBLE_EQ(line.time_at(0), 12);
-    EXPECT_DOUBLE_EQ(line.time_at(3.25), 15.25);
-    EXPECT_DOUBLE_EQ(line.time_at(line.place()), line.clock.time);
-    TimeLine const last{{max_scene_time, false, 1}, 4};
-    EXPECT_LE(last.time_at(3.9), max_scene_time);
+TEST(TimeLine, ARoundIsFromOneBeginningOfTheLongestClipToTheNext) {
+    auto const round = [](SceneTime time, double duration) {
+        TimeLine const line{{time, true, 1}, duration};
+        return std::pair(line.round_begin(), line.round_end());
+    };
+    EXPECT_EQ(round(3, 4), std::pair(0.0, 4.0));
+    EXPECT_EQ(round(4, 4), std::pair(4.0, 8.0));
+    EXPECT_EQ(round(13.5, 4), std::pair(12.0, 16.0));
+    EXPECT_EQ(round(13.5, 0), std::pair(0.0, 0.0)) << "nothing moves";
+    EXPECT_EQ(round(max_scene_time, 4).second, max_scene_time);
 }
 
 } // namespace

@@ -1,5 +1,6 @@
 #include "tests/evaluation/bench_scene.h"
 
+#include "server/scene/backdrop.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
@@ -18,7 +19,7 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->posed = std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene);
     loaded->pose = loaded->posed->pose_of(0);
     loaded->scene_camera = loaded->scene.cameras.empty() ? none : 0;
-    loaded->default_camera = default_camera(scene_bounds(loaded->scene, loaded->pose));
+    loaded->default_camera = default_camera(without_backdrop(scene_parts(loaded->scene, loaded->pose)));
     loaded->camera = camera_at(*loaded, 0);
     loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera);
     return loaded;

@@ -81,6 +81,7 @@ TEST_F(StartPanelTest, ARefusalIsToldAndAnotherServerTyped) {
     ASSERT_TRUE(has(program_->errors(), "token")) << program_->errors();
     std::string const refusal = program_->errors().substr(program_->errors().find("token"));
     EXPECT_FALSE(has(refusal.substr(0, refusal.find('\n')), "waiting for it")) << refusal;
+    EXPECT_FALSE(has(refusal, "--token-file")) << "there is a field for it: " << refusal;
     EXPECT_TRUE(program_->running());
     for (int y = screen_height / 3; y < screen_height && !has_viewer(open); y += 12) {
         click(screen_width / 2, y); // into the field at last
@@ -89,7 +90,19 @@ TEST_F(StartPanelTest, ARefusalIsToldAndAnotherServerTyped) {
     EXPECT_TRUE(gets_viewer(open)) << program_->errors();
     start(FRAMELET_VIEWER, {strict.address()}); // of the command line it is the end
     EXPECT_EQ(program_->wait(patience), 1);
-    EXPECT_TRUE(has(program_->errors(), "token")) << program_->errors();
+    EXPECT_TRUE(has(program_->errors(), "--token-file")) << program_->errors();
+}
+
+TEST_F(StartPanelTest, ATokenThatIsRefusedIsTypedAnewWithoutAClick) {
+    std::string const words = "0123456789abcdef0123456789abcdef";
+    ServerProcess strict(scene_file, {"--token-file", folder_.write("token", words + "\n")});
+    start_viewer({});
+    enter_until(strict.address(), [&] { return has(program_->errors(), "token"); });
+    auto const is_let_in = [&] { return has(strict.process().errors(), " connects"); };
+    for (int i = 0; i < 10 && !eventually_soon(is_let_in); ++i) {
+        enter(words);
+    }
+    EXPECT_TRUE(is_let_in()) << program_->errors();
 }
 
 TEST_F(StartPanelTest, ACertificateThatNobodyVouchesForIsAskedAbout) {
@@ -102,6 +115,7 @@ TEST_F(StartPanelTest, ACertificateThatNobodyVouchesForIsAskedAbout) {
     std::filesystem::path const known = folder_.path() / "framelet" / "known_servers";
     start_viewer({server.address(), "--tls"});
     ASSERT_TRUE(eventually([&] { return has(program_->errors(), "no authority vouches"); })) << program_->errors();
+    EXPECT_FALSE(has(program_->errors(), "framelet-viewer asks")) << "this one does: " << program_->errors();
     EXPECT_FALSE(has(content_of(known), server.address())) << "nobody has said so yet";
     EXPECT_FALSE(has(server.process().errors(), "connects")) << "nothing has been sent";
     // The answers are below the text; the right one says yes.

@@ -162,16 +162,16 @@ TEST_F(WindowInputTest, TheWheelGoesTowardsWhatIsUnderThePointer) {
 
 TEST_F(WindowInputTest, TheBarSetsTheClock) {
     constexpr float bar = height - 17;
-    constexpr Vec2 play{150, bar};
+    constexpr Vec2 play{175, bar};
     auto const scrub_to = [&](float x) { drag({x - 10, bar}, {x, bar}); };
     double later = 0;
     EXPECT_TRUE(eventually([&] {
-        scrub_to(265);
+        scrub_to(280);
         later = scene_seconds();
         return later > 0;
     }));
     EXPECT_TRUE(eventually([&] {
-        scrub_to(235);
+        scrub_to(250);
         double const earlier = scene_seconds();
         return earlier > 0 && earlier < later;
     }));

@@ -50,6 +50,22 @@ TEST(SceneSummary, TextNamesWhatThereIsAndWhatIsNot) {
     }
 }
 
+TEST(SceneSummary, TellsTheSizeWithAndWithoutABackdrop) {
+    Scene scene = two_that_share_a_mesh();
+    EXPECT_FALSE(has(scene_summary_text(scene, {}), "backdrop"));
+    Primitive sky = scene.meshes[0].primitives[0];
+    sky.positions = {{-100, -10, -100}, {100, -10, 100}, {0, 90, 0}};
+    sky.material = 1;
+    scene.materials.emplace_back().unlit = true;
+    scene.meshes.push_back({"sky", {sky}, {}});
+    scene.nodes[2].mesh = 1;
+    std::string const text = scene_summary_text(scene, {});
+    EXPECT_TRUE(has(text, "200.00 x 100.00 x 200.00 m, without its backdrop 2.00 x 3.00 x 0.00 m")) << text;
+    auto const json = nlohmann::json::parse(scene_summary_json(scene, {}));
+    EXPECT_EQ(json["bounds"]["high"][1], 90);
+    EXPECT_EQ(json["bounds_without_backdrop"]["high"][1], 3);
+}
+
 TEST(SceneSummary, JsonSaysTheSame) {
     Scene scene = two_that_share_a_mesh();
     scene.nodes[1].name = "gate\xff";

@@ -31,6 +31,18 @@ constexpr float most_covered = 1.5f;
 /// Least distance from the scene then, and least height of an orthographic picture, in its diagonals.
 constexpr float least_fit_distance = 0.05f;
 
+/// Farthest point that is taken hold of, in distances to the farthest corner of the scene: depths are rounded.
+constexpr float hold_margin = 1.1f;
+
+Vec3 in_camera_space(Camera const& camera, Vec3 point) {
+    return glm::conjugate(camera.orientation) * (point - camera.position);
+}
+
+/// Somebody who stands on the ground looks up less steeply than this, by the sine; and down so far, radians, where
+/// backing off would lead below it.
+constexpr float most_look_up = 0.5f;
+constexpr float look_down = 0.25f;
+
 float diagonal(Bounds const& scene) {
     float const length = scene.empty() ? 0 : glm::length(scene.size());
     return std::isfinite(length) && length > 0 ? std::min(length, largest_scene) : 1;
@@ -113,11 +125,17 @@ void CameraController::dolly(float steps) {
     go_to(center - camera_.orientation * pivot_);
 }
 
+bool CameraController::can_hold(Camera const& camera, Vec3 point) const {
+    Vec3 const corner = glm::max(glm::abs(scene_.lower - camera.position), glm::abs(scene_.upper - camera.position));
+    float const farthest_hold =
+        scene_.empty() || size_ >= largest_scene ? 1e3f * size_ : hold_margin * glm::length(corner);
+    Vec3 const place = in_camera_space(camera, point);
+    return place.z < -1e-5f * size_ && glm::length(place) <= farthest_hold; // false for NaN, too
+}
+
 void CameraController::set_pivot(Vec3 point) {
-    Vec3 const place = glm::conjugate(camera_.orientation) * (point - camera_.position);
-    float const distance = glm::length(place);
-    if (place.z < -1e-5f * size_ && distance <= 1e3f * size_) { // false for NaN, too
-        pivot_ = place;
+    if (can_hold(camera_, point)) {
+        pivot_ = in_camera_space(camera_, point);
     }
 }
 
@@ -156,6 +174,15 @@ void CameraController::fit(Viewport viewport, int covered_below) {
     if (scene_.empty() || size_ >= largest_scene) {
         return;
     }
+    bool const stands_on_it = camera_.position.y >= scene_.lower.y && camera_.forward().y < most_look_up;
+    back_off(viewport, covered_below);
+    if (stands_on_it && camera_.position.y < scene_.lower.y) {
+        turn(0, -look_down - std::asin(std::clamp(camera_.forward().y, -1.0f, 1.0f)));
+        back_off(viewport, covered_below);
+    }
+}
+
+void CameraController::back_off(Viewport viewport, int covered_below) {
     // The part of the picture that is free, in halves of its height from the middle, x right, y up.
     auto const height = static_cast<float>(viewport.height);
     float const aspect = static_cast<float>(viewport.width) / height;

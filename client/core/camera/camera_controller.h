@@ -27,12 +27,16 @@ public:
     void set_camera(Camera const& camera);
     void reset() { set_camera(home_); }
 
+    /// True for a point that this camera can have for its pivot: not one behind it, nor one farther away than all of
+    /// the scene, as its backdrop is (the scene is told without one), nor one that is not finite.
+    bool can_hold(Camera const& camera, Vec3 point) const;
     /// Sets the pivot: the point that the camera orbits and nears, and by whose depth it pans. Does nothing where the
-    /// point lies behind the camera, more than 1000 diagonals of the scene away, or is not finite.
+    /// camera cannot hold it.
     void set_pivot(Vec3 point);
     /// Turns to a point, goes half of the way there, and has it for its pivot. World up becomes up.
     void focus(Vec3 point);
-    /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction, with a margin.
+    /// Backs off, or nears, until all of the scene is in the picture, seen from the same direction, with a margin. One
+    /// who stands above the scene's lower edge and looks up a little looks down instead, where that led below it.
     /// `covered_below`: pixels at the lower edge that something else lies over, of which it stays clear.
     void fit(Viewport viewport, int covered_below = 0);
 
@@ -69,6 +73,7 @@ public:
 private:
     void turn(float yaw, float pitch);
     void go_to(Vec3 position);
+    void back_off(Viewport viewport, int covered_below);
 
     Camera home_;
     Bounds scene_;

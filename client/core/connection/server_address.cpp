@@ -1,7 +1,9 @@
 #include "client/core/connection/server_address.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
+#include <string_view>
 
 #include <boost/asio/ip/address_v6.hpp>
 
@@ -26,6 +28,16 @@ bool is_ipv6(std::string const& text) {
     return !error;
 }
 
+/// The scheme of a URL, in small letters; empty where the text is none.
+std::string scheme_of(std::string const& text) {
+    std::size_t const end = text.find("://");
+    std::size_t const begin = text.find_first_not_of(" \t\r\n");
+    std::string out = end == std::string::npos ? "" : text.substr(begin, end - begin);
+    std::ranges::transform(out, out.begin(),
+                           [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c + 32) : c; });
+    return out;
+}
+
 /// What of the text is HOST[:PORT]: without blanks around it, and of a URL neither scheme nor user nor path.
 std::string without_url(std::string text) {
     text.erase(0, text.find_first_not_of(" \t\r\n"));
@@ -39,9 +51,8 @@ std::string without_url(std::string text) {
 } // namespace
 
 bool asks_for_tls(std::string const& text) {
-    std::string const scheme = text.substr(0, text.find("://"));
-    std::size_t const begin = std::min(scheme.find_first_not_of(" \t\r\n"), scheme.size());
-    return scheme.size() < text.size() && (scheme.substr(begin) == "tls" || scheme.substr(begin) == "https");
+    std::string const scheme = scheme_of(text);
+    return scheme == "tls" || scheme == "https";
 }
 
 std::string with_tls(std::string const& text, bool tls) {
@@ -53,10 +64,14 @@ std::string with_tls(std::string const& text, bool tls) {
 
 ServerAddress parse_address(std::string const& from, std::uint16_t port_without) {
     std::string const text = without_url(from);
-    auto const fail = [&](char const* what) {
+    auto const fail = [&](std::string const& what) {
         return InputError("cannot use \"" + from + "\" as a server: " + what +
                           ": write HOST or HOST:PORT, as in 127.0.0.1:" + std::to_string(port_without));
     };
+    constexpr std::array<std::string_view, 5> known_schemes{"", "framelet", "http", "https", "tls"};
+    if (std::string const scheme = scheme_of(from); std::ranges::find(known_schemes, scheme) == known_schemes.end()) {
+        throw fail("it is not reached by " + scheme + "://");
+    }
     ServerAddress out;
     std::string port = std::to_string(port_without);
     if (text.starts_with('[')) {

@@ -15,9 +15,11 @@
 
 #include "client/core/connection/address_race.h"
 #include "client/core/connection/back_off.h"
+#include "client/core/connection/token_refusal.h"
 #include "client/core/connection/token_route.h"
 #include "client/core/connection/unknown_certificate.h"
 #include "common/error.h"
+#include "protocol/messages/wrong_token.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/stream_opening.h"
@@ -65,6 +67,7 @@ struct ServerConnection::Impl {
     std::shared_ptr<FramedStream> attempted; ///< stream of this attempt, once it is connected
     std::string distrust; ///< why this attempt's certificate is refused; empty: it is not
     std::string unknown_fingerprint; ///< of that certificate, where the user is to be asked
+    bool is_token_wrong = false; ///< for which this attempt is refused
     bool has_ticket = false; ///< this attempt's Hello has a ticket
     bool open = false; ///< this attempt's Welcome has come
     bool was_open = false; ///< some attempt's Welcome has come
@@ -112,6 +115,7 @@ struct ServerConnection::Impl {
         if (!was_open) {
             auto const error = !unknown_fingerprint.empty()
                                    ? std::make_exception_ptr(UnknownCertificate(reason, server, unknown_fingerprint))
+                               : is_token_wrong        ? std::make_exception_ptr(TokenRefusal(reason))
                                : retry == Retry::never ? std::make_exception_ptr(ConnectionRefusal(reason))
                                                        : std::make_exception_ptr(ConnectionError(reason));
             is_over = true;
@@ -261,6 +265,7 @@ struct ServerConnection::Impl {
     void receive(Message message) {
         silent_ticks = 0;
         if (auto const* failure = std::get_if<Failure>(&message)) {
+            is_token_wrong = failure->text == wrong_token_text;
             end((open ? "the server at " + server + " ended the session: "
                       : "the server at " + server + " refused the connection: ") +
                     failure->text,

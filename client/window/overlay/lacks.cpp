@@ -32,6 +32,11 @@ std::string confidence_lacks(bool moves_samples) {
     return moves_samples ? "" : samples_stay() + ": ages say the same";
 }
 
+std::string clipboard_lacks(std::string const& text) {
+    std::size_t const begin = text.find_first_not_of(" \t\r\n");
+    return begin == std::string::npos || text[begin] != '{' ? "the clipboard holds no camera" : "";
+}
+
 std::string picture_lacks(bool has_picture) {
     return has_picture ? "" : "there is no picture yet";
 }

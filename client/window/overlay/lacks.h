@@ -17,6 +17,8 @@ std::string scene_cameras_lack(std::size_t count);
 std::string smoothing_lacks(bool moves, bool moves_samples);
 /// Says why the confidence of pixels cannot be drawn over the picture.
 std::string confidence_lacks(bool moves_samples);
+/// Says why this text of the clipboard is no view to be gone to; what is wrong in a camera file is for its reader.
+std::string clipboard_lacks(std::string const& text);
 /// Says why no screenshot or film can be taken.
 std::string picture_lacks(bool has_picture);
 

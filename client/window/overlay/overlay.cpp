@@ -27,7 +27,8 @@ void Overlay::lay_out(OverlayContent const& content, OverlayActions& actions) {
     ImGui::NewFrame();
     ImGuiIO const& io = ImGui::GetIO();
     std::vector<OverlayArea> areas;
-    OverlayFrame frame{actions, areas, edit_, std::exchange(closes_menu_, false)};
+    ServerField const takes_keys = content.address ? content.address->takes_keys : ServerField::none;
+    OverlayFrame frame{actions, areas, edit_, std::exchange(had_keys_, takes_keys), std::exchange(closes_menu_, false)};
     if (content.time_line) {
         draw_bar(content, frame);
     }
@@ -96,10 +97,10 @@ OverlayActions Overlay::draw(OverlayContent const& content, float scale) {
     if (scale != scale_) {
         set_scale(scale);
     }
-    if (content.address && !has_address_) {
-        server_ = {content.address->proposed};
+    if (content.address && content.address->proposed != proposed_) {
+        proposed_ = content.address->proposed;
+        server_ = {*proposed_};
     }
-    has_address_ = content.address.has_value();
     OverlayActions actions;
     mouse_areas_.clear();
     if (content != drawn_ && !content.empty()) {

@@ -2,6 +2,7 @@
 // over the picture (Dear ImGui); what the hands did to it.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,7 +49,8 @@ private:
     bool closes_menu_ = false;
     NameEdit edit_;
     NamedServer server_; ///< as typed
-    bool has_address_ = false; ///< its field is shown, and has been filled in
+    std::optional<std::string> proposed_; ///< what its field was filled in with at first
+    ServerField had_keys_ = ServerField::none; ///< as OverlayFrame's
 };
 
 } // namespace framelet

@@ -47,13 +47,13 @@ float overlays_width() {
     return width + 2 * ImGui::GetStyle().FramePadding.x;
 }
 
-/// Width of what stands to the right of the time line, pixels.
-float right_width() {
+/// Width of what stands to the right of the time line, pixels. `moves`: the speed of the clock is among it.
+float right_width(bool moves) {
     ImGuiStyle const& style = ImGui::GetStyle();
     auto const width_of = [&](char const* text) { return ImGui::CalcTextSize(text).x + style.ItemSpacing.x; };
     auto const width_of_button = [&](char const* text) { return width_of(text) + 2 * style.FramePadding.x; };
     float const plus_and_minus = 2 * width_of_button("+");
-    float width = has_room(room_for_speed) ? plus_and_minus + width_of("0.0625x") : 0;
+    float width = moves && has_room(room_for_speed) ? plus_and_minus + width_of("0.0625x") : 0;
     width += has_room(room_for_exposure) ? plus_and_minus + width_of("-16.00 EV") : 0;
     width += has_room(room_for_bias) ? width_of_button("sharp") + width_of("+0.00") + width_of_button("fresh") : 0;
     width += has_room(room_for_overlays) ? overlays_width() + style.ItemSpacing.x : 0;
@@ -69,16 +69,21 @@ void clock_controls(TimeLine const& line, OverlayFrame& frame) {
     button("<", Command::step_back, frame, lacks);
     button(line.clock.playing ? "pause###play" : "play ###play", Command::play_or_pause, frame, lacks);
     button(">", Command::step_forward, frame, lacks);
-    double place = line.place();
-    double const least = 0;
-    std::string const format = formatted("%%.2f of %.2f s", line.duration);
-    ImGui::SetNextItemWidth(std::max(ImGui::GetContentRegionAvail().x - right_width(), 6 * ImGui::GetFontSize()));
+    SceneTime time = line.clock.time;
+    SceneTime const begin = line.round_begin();
+    SceneTime const end = line.round_end();
+    float const width = std::max(ImGui::GetContentRegionAvail().x - right_width(true), 5 * ImGui::GetFontSize());
+    std::string const both = formatted("%.2f s (every %.2f s)", end, line.duration);
+    bool const has_room_for_both = ImGui::CalcTextSize(both.c_str()).x < width;
+    std::string const format =
+        has_room_for_both ? formatted("%%.2f s (every %.2f s)", line.duration) : std::string("%.2f s");
+    ImGui::SetNextItemWidth(width);
     begin_lack(lacks);
-    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &place, &least, &line.duration, format.c_str(),
+    if (ImGui::SliderScalar("##time", ImGuiDataType_Double, &time, &begin, &end, format.c_str(),
                             ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput)) {
-        frame.actions.seek = line.time_at(place);
+        frame.actions.seek = time;
     }
-    end_lack(lacks, "time of the animation: drag, or Left and Right for a second");
+    end_lack(lacks, "the scene's clock, in this round of the longest clip: drag, or Left and Right for a second");
     ImGui::SameLine();
     if (has_room(room_for_speed)) {
         button("-##speed", Command::slower, frame, lacks);
@@ -127,7 +132,8 @@ void bookmark_row(int number, std::string const& name, OverlayFrame& frame) {
 /// Draws the bar's menu of what one can look through.
 void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     float const font = ImGui::GetFontSize();
-    float const width = std::clamp(ImGui::GetIO().DisplaySize.x / 10, 5 * font, 9 * font);
+    float const least = ImGui::CalcTextSize(free_camera_text).x + 2 * ImGui::GetStyle().FramePadding.x;
+    float const width = std::max(std::min(ImGui::GetIO().DisplaySize.x / 10, 9 * font), least);
     if (ImGui::Button((menu.current + "###camera").c_str(), ImVec2(width, 0))) {
         ImGui::OpenPopup("cameras");
     }
@@ -140,7 +146,7 @@ void draw_camera_menu(CameraMenu const& menu, OverlayFrame& frame) {
     if (frame.closes_menu) {
         ImGui::CloseCurrentPopup();
     }
-    if (ImGui::Selectable("free camera")) {
+    if (ImGui::Selectable(free_camera_text)) {
         frame.actions.commands.push_back(Command::free_camera);
     }
     tooltip(tip_of(Command::free_camera));
@@ -224,7 +230,12 @@ void draw_bar(OverlayContent const& content, OverlayFrame& frame) {
                      ImGuiWindowFlags_NoScrollWithMouse);
     take_area(frame);
     draw_camera_menu(content.cameras, frame);
-    clock_controls(line, frame);
+    if (line.duration > 0) {
+        clock_controls(line, frame);
+    } else { // what stands at the right end does so in every scene
+        float const room = ImGui::GetContentRegionAvail().x - right_width(false);
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(room, 0.0f));
+    }
     if (has_room(room_for_exposure)) {
         button("-##exposure", Command::darker, frame);
         label(formatted("%+.2f EV", static_cast<double>(line.exposure_ev)).c_str());

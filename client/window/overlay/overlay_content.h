@@ -1,6 +1,7 @@
 // The content of the overlay, as plain values, and what the mouse and the keyboard did to it.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,9 @@ struct Legend {
     bool operator==(Legend const&) const = default;
 };
 
+/// The name of the view that is neither a camera of the scene nor a bookmark.
+inline constexpr char const* free_camera_text = "free camera";
+
 /// The cameras and bookmarks that one can look through.
 struct CameraMenu {
     std::string current;
@@ -60,11 +64,12 @@ struct NameEdit {
     std::string text{};
 };
 
+enum class ServerField : std::uint8_t { none, address, token };
 /// Fields in which a server may be named, and its token.
 struct AddressField {
     std::string proposed;
     std::vector<std::string> recent;
-    bool takes_keys = false; ///< from the first, without a click into it
+    ServerField takes_keys = ServerField::none; ///< once it is another than before, without a click into it
     bool always_tls = false; ///< whatever the address says
     bool operator==(AddressField const&) const = default;
 };

@@ -137,6 +137,17 @@ bool text_field(char const* name, std::string& text, ImGuiInputTextFlags flags, 
     return entered;
 }
 
+/// Of a window along the lower edge, as the bar is, the next tooltip stands above it: below the pointer it would lie
+/// over the buttons beside.
+void place_tooltip() {
+    ImVec2 const display = ImGui::GetIO().DisplaySize;
+    ImVec2 const window = ImGui::GetWindowPos();
+    if (window.x == 0 && window.y + ImGui::GetWindowHeight() >= display.y) {
+        float const place = std::clamp(ImGui::GetMousePos().x / display.x, 0.0f, 1.0f);
+        ImGui::SetNextWindowPos(ImVec2(place * display.x, window.y), ImGuiCond_Always, ImVec2(place, 1));
+    }
+}
+
 void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFrame& frame) {
     float const begin = ImGui::GetCursorPosX() + ImGui::CalcTextSize("server: ").x;
     auto const label = [begin](char const* text) {
@@ -146,9 +157,12 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     };
     ImGui::Separator();
     label("server:");
-    if (field.takes_keys && ImGui::IsWindowAppearing()) {
-        ImGui::SetKeyboardFocusHere();
-    }
+    auto const give_keys = [&](ServerField to) {
+        if (field.takes_keys == to && frame.had_keys != to) {
+            ImGui::SetKeyboardFocusHere();
+        }
+    };
+    give_keys(ServerField::address);
     bool entered = text_field("##address", typed.address, 0, frame);
     tooltip("HOST or HOST:PORT, where framelet-server listens");
     ImGui::SameLine();
@@ -161,6 +175,7 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     tooltip(field.always_tls ? "the command line says so"
                              : "encrypt the connection, as servers beyond this machine ask");
     label("token:");
+    give_keys(ServerField::token);
     entered = text_field("##token", typed.token, ImGuiInputTextFlags_Password, frame) || entered;
     tooltip(
         "what the server's --token-file has. Empty: as on the command line, and none on the same machine as the same "
@@ -171,7 +186,8 @@ void draw_server_fields(AddressField const& field, NamedServer& typed, OverlayFr
     }
     for (std::string const& address : field.recent) {
         if (ImGui::SmallButton(address.c_str())) {
-            frame.actions.server = {address, typed.token};
+            typed.address = address;
+            frame.actions.server = typed;
         }
         tooltip("connect to it as before");
     }
@@ -190,6 +206,7 @@ void take_area(OverlayFrame& frame) {
 
 void tooltip(std::string const& text) {
     if (ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled)) {
+        place_tooltip();
         ImGui::PushStyleVar(ImGuiStyleVar_Alpha, 1); // the tooltip is not as pale as what cannot be used
         ImGui::BeginTooltip();
         ImGui::PushTextWrapPos(36 * ImGui::GetFontSize());

@@ -23,6 +23,7 @@ struct OverlayFrame {
     OverlayActions& actions;
     std::vector<OverlayArea>& areas;
     NameEdit& edit;
+    ServerField had_keys = ServerField::none; ///< the field that took the keys in the last frame
     bool closes_menu = false; ///< a menu that is open is to be closed
     float bar_height = 0; ///< so much of the lower edge is taken, in ImGui's coordinates
     float left_width = 0; ///< so much of the upper edge is taken, from the left

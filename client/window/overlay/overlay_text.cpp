@@ -204,7 +204,7 @@ std::string clock_text(TimeLine const& time) {
         return nothing_moves_text;
     }
     std::ostringstream out;
-    out << std::fixed << std::setprecision(2) << time.place() << " of " << time.duration << " s, "
+    out << std::fixed << std::setprecision(2) << time.clock.time << " s (every " << time.duration << " s), "
         << (time.clock.playing ? "playing" : "paused");
     if (time.clock.speed != 1) {
         out << std::defaultfloat << " at " << time.clock.speed << "x";

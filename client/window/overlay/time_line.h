@@ -1,5 +1,6 @@
-// The place of the scene's clock in the animation, which begins anew at its end. In: clock, length of the animation.
-// Out: a place in it, and the time of the clock that goes with another place.
+// The scene's clock, and the round of the animation that it is in: the longest clip begins anew at its end, the clock
+// goes on, since other clips are not where they were then. In: clock, length of that clip. Out: when the round begins
+// and ends.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +19,10 @@ struct TimeLine {
 
     bool operator==(TimeLine const&) const = default;
 
-    /// Seconds since the animation began anew, [0, duration); 0 where nothing moves.
-    double place() const { return duration > 0 ? std::fmod(clock.time, duration) : 0; }
-    /// The clock's time that goes with another place in the same round.
-    SceneTime time_at(double other_place) const {
-        return std::clamp(clock.time - place() + other_place, 0.0, max_scene_time);
-    }
+    /// When the longest clip began anew, seconds of the clock; 0 where nothing moves.
+    SceneTime round_begin() const { return duration > 0 ? clock.time - std::fmod(clock.time, duration) : 0; }
+    /// When it does so next.
+    SceneTime round_end() const { return std::min(round_begin() + duration, max_scene_time); }
 };
 
 } // namespace framelet

@@ -55,6 +55,14 @@ struct DeformedVertices {
 void deform(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin, ScenePose const& pose,
             DeformedVertices& out);
 
+/// A primitive where a node shows it.
+struct ScenePart {
+    Bounds box; ///< in the world; not empty
+    bool takes_light = true; ///< false: it is unlit, or black but for what it emits
+};
+/// The parts of everything drawn, in this pose.
+std::vector<ScenePart> scene_parts(Scene const& scene, ScenePose const& pose);
+
 /// World box of everything drawn, in this pose.
 Bounds scene_bounds(Scene const& scene, ScenePose const& pose);
 

@@ -8,6 +8,7 @@
 
 #include "common/counted.h"
 #include "common/one_line.h"
+#include "server/scene/backdrop.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
 #include "server/scene/summary/visibility.h"
@@ -33,6 +34,11 @@ Json three(glm::dvec3 const& v) {
     return {v.x, v.y, v.z};
 }
 
+Json box_json(Scene const& scene, Bounds const& box) {
+    return {{"low", three(scene.origin + glm::dvec3(box.lower))},
+            {"high", three(scene.origin + glm::dvec3(box.upper))}};
+}
+
 /// A file may call things as it likes, with line breaks and what a terminal obeys too.
 std::string shown(std::string const& name) {
     return name.empty() ? "(no name)" : to_one_line(name);
@@ -41,7 +47,7 @@ std::string shown(std::string const& name) {
 /// The one place that knows what is said; text and JSON have the same content.
 Json summarize(Scene const& scene, std::span<Index const> clips) {
     SceneBodies const bodies = find_bodies(scene, clips);
-    Bounds const bounds = scene_bounds(scene, evaluate_pose(scene, clips, 0));
+    ScenePose const pose = evaluate_pose(scene, clips, 0);
     Json out = {{"scene", scene.name},
                 {"nodes", scene.nodes.size()},
                 {"meshes", scene.meshes.size()},
@@ -50,9 +56,8 @@ Json summarize(Scene const& scene, std::span<Index const> clips) {
                 {"textures", scene.textures.size()},
                 {"images", scene.images.size()},
                 {"image_bytes", image_bytes(scene)},
-                {"bounds",
-                 {{"low", three(scene.origin + glm::dvec3(bounds.lower))},
-                  {"high", three(scene.origin + glm::dvec3(bounds.upper))}}},
+                {"bounds", box_json(scene, scene_bounds(scene, pose))},
+                {"bounds_without_backdrop", box_json(scene, without_backdrop(scene_parts(scene, pose)))},
                 {"origin", three(scene.origin)},
                 {"anything_to_see", has_anything_to_see(scene)},
                 {"duration_seconds", animation_duration(scene, clips)}};
@@ -133,6 +138,14 @@ std::vector<std::string> each(Json const& list, Write const& write) {
     return lines;
 }
 
+std::string size_text(Json const& box) {
+    std::string out;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        out += (axis == 0 ? "" : " x ") + fixed(box["high"][axis].get<double>() - box["low"][axis].get<double>(), 2);
+    }
+    return out + " m";
+}
+
 std::string name_of(Json const& entry) {
     return shown((entry.is_object() ? entry["name"] : entry).get<std::string>());
 }
@@ -151,17 +164,15 @@ std::size_t count_triangles(Scene const& scene) {
 
 std::string scene_summary_text(Scene const& scene, std::span<Index const> clips) {
     Json const s = summarize(scene, clips);
-    Json const& low = s["bounds"]["low"];
-    Json const& high = s["bounds"]["high"];
-    std::string size;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        size += (axis == 0 ? "" : " x ") + fixed(high[axis].get<double>() - low[axis].get<double>(), 2);
+    std::string size = size_text(s["bounds"]);
+    if (s["bounds"] != s["bounds_without_backdrop"]) {
+        size += ", without its backdrop " + size_text(s["bounds_without_backdrop"]);
     }
     Lines lines;
     lines.add("geometry", {count_of(s["triangles"], "triangle") + ", " + count_of(s["meshes"], "mesh", "meshes") +
                            ", " + count_of(s["nodes"], "node")});
-    lines.add("size", {s["anything_to_see"].get<bool>() ? size + " m"
-                                                        : "there is nothing to see: a server refuses this scene"});
+    lines.add("size",
+              {s["anything_to_see"].get<bool>() ? size : "there is nothing to see: a server refuses this scene"});
     if (scene.origin != glm::dvec3(0)) {
         glm::dvec3 const& at = scene.origin;
         lines.add("far away", {"about " + fixed(at.x, 0) + ", " + fixed(at.y, 0) + ", " + fixed(at.z, 0) +
