@@ -197,6 +197,27 @@ TEST(Session, WhoeverComesBackAgainAndAgainBeforeItsTurnLeavesOneSessionAndItsBo
     EXPECT_LE(framelets, most_waiting);
 }
 
+/// A chain of sessions would take the stack of whoever goes along it.
+TEST(Session, OfVeryManyReturnsBeforeATurnNoneIsLeftButTheLast) {
+    Viewed first;
+    first.session->start();
+    first.stream->bring(Hello{});
+    first.session->cut();
+    auto last = std::make_unique<Viewed>();
+    last->session->resume(first.session, 0);
+    std::weak_ptr<Session> const second = last->session;
+    for (int times = 0; times < 100'000; ++times) {
+        last->session->start();
+        last->stream->bring(Hello{});
+        last->session->cut();
+        auto next = std::make_unique<Viewed>();
+        next->session->resume(last->session, 0);
+        last = std::move(next);
+    }
+    EXPECT_TRUE(second.expired());
+    EXPECT_TRUE(last->session->take_over(*first.session));
+}
+
 TEST(Session, WhatHasBeenGivenUpIsNotTakenOver) {
     Viewed first, second;
     for (Viewed* const viewer : {&first, &second}) {
