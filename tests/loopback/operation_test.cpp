@@ -66,31 +66,6 @@ TEST(Operation, WhatCannotBePrintedIsAFailure) {
     }
 }
 
-/// A tree as deep as this takes Assimp's stack.
-TEST(Operation, ASceneThatEndsItsReaderIsALine) {
-    TemporaryFolder const folder;
-    std::string nodes, ends;
-    for (int i = 0; i < 200'000; ++i) {
-        nodes += "<node>";
-        ends += "</node>";
-    }
-    std::string const scene = folder.write(
-        "deep.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
-                    "version=\"1.4.1\"><asset/><library_visual_scenes><visual_scene id=\"s\">" +
-                        nodes + ends +
-                        "</visual_scene></library_visual_scenes><scene><instance_visual_scene "
-                        "url=\"#s\"/></scene></COLLADA>");
-    for (std::vector<std::string> const& words : {std::vector<std::string>{scene}, {"--info", scene}}) {
-        Process server(FRAMELET_SERVER, words);
-        EXPECT_EQ(server.wait(patience), 1);
-        EXPECT_EQ(std::ranges::count(server.errors(), '\n'), 1) << server.errors();
-        EXPECT_TRUE(has(server.errors(), "deep.dae': ")) << server.errors();
-#ifndef FRAMELET_SANITIZE // a sanitizer has last words of its own
-        EXPECT_TRUE(has(server.errors(), "deep.dae': it ends the process that reads it")) << server.errors();
-#endif
-    }
-}
-
 nlohmann::json info_of(std::vector<std::string> const& scenes) {
     std::vector<std::string> arguments{"--info", "--json"};
     arguments.insert(arguments.end(), scenes.begin(), scenes.end());
