@@ -8,11 +8,6 @@
 #include <sstream>
 #include <thread>
 
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <pty.h>
@@ -20,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/loopback/metrics_page.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::test {
@@ -240,49 +236,6 @@ TEST(Operation, WhatViewersHadThatHaveLeftIsGivenBack) {
     after_viewers(8);
     EXPECT_TRUE(eventually([&] { return resident_megabytes(server.process().pid()) < one + 40; }))
         << resident_megabytes(server.process().pid()) << " MB, with one viewer " << one;
-}
-
-namespace http = boost::beast::http;
-using boost::asio::ip::tcp;
-
-tcp::socket connected(boost::asio::io_context& io, std::string const& address) {
-    auto const colon = static_cast<std::ptrdiff_t>(address.rfind(':'));
-    tcp::socket socket(io);
-    boost::asio::connect(socket, tcp::resolver(io).resolve(std::string(address.begin(), address.begin() + colon),
-                                                           std::string(address.begin() + colon + 1, address.end())));
-    return socket;
-}
-
-http::response<http::string_body> ask(std::string const& address, std::string const& target,
-                                      http::verb verb = http::verb::get) {
-    boost::asio::io_context io;
-    tcp::socket socket = connected(io, address);
-    http::request<http::empty_body> request(verb, target, 11);
-    request.set(http::field::host, address);
-    http::write(socket, request);
-    boost::beast::flat_buffer buffer;
-    http::response<http::string_body> answer;
-    http::read(socket, buffer, answer);
-    return answer;
-}
-
-double metric(std::string const& page, std::string const& name) {
-    std::size_t const at = page.find("\n" + name + " ");
-    return at == std::string::npos ? -1 : std::stod(page.substr(at + name.size() + 2));
-}
-
-/// Address of the port for figures, as the server says it.
-std::string metrics_address(ServerProcess& server) {
-    std::string const before = "metrics at http://";
-    for (auto const end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
-        std::string const told = server.process().output();
-        std::size_t const at = told.find(before);
-        if (std::size_t const slash = told.find("/metrics", at);
-            at != std::string::npos && slash != std::string::npos) {
-            return told.substr(at + before.size(), slash - at - before.size());
-        }
-    }
-    return "";
 }
 
 TEST(Operation, PrometheusAndHealthChecksAreAnswered) {
