@@ -4,12 +4,14 @@
 #include <iostream>
 #include <memory>
 #include <numeric>
+#include <optional>
 #include <sstream>
 #include <utility>
 
 #include "common/command_line/bash_completion.h"
 #include "common/command_line/man_page.h"
 #include "common/command_line/option_text.h"
+#include "common/files/regular_file.h"
 #include "common/program_line.h"
 #include "framelet_version.h"
 
@@ -52,6 +54,16 @@ class ConfigFile : public CLI::ConfigTOML {
 public:
     explicit ConfigFile(CLI::App* app) : app_(app) {}
 
+    /// Opens a file and returns a name of what is open, for CLI11, which by itself would wait for a pipe.
+    std::string open(std::string const& file) {
+        name_ = file;
+        return opened_.emplace(file).name();
+    }
+    /// Why the file cannot be read.
+    std::string problem() const {
+        return "configuration file '" + name_ + "' cannot be read: " + opened_.value().problem();
+    }
+
     std::vector<CLI::ConfigItem> from_config(std::istream& input) const override {
         std::vector<CLI::ConfigItem> checked;
         for (CLI::ConfigItem& item : CLI::ConfigTOML::from_config(input)) {
@@ -73,8 +85,7 @@ public:
 
 private:
     CLI::ConfigError complaint(std::string const& text) const {
-        return {"configuration file '" + app_->get_config_ptr()->as<std::string>() + "': " + text,
-                CLI::ExitCodes::ConfigError};
+        return {"configuration file '" + name_ + "': " + text, CLI::ExitCodes::ConfigError};
     }
 
     /// Finds the option of an item and gives the item the name by which CLI11 finds it; null where there is none.
@@ -129,6 +140,8 @@ private:
     }
 
     CLI::App* app_;
+    std::string name_; ///< of the file
+    std::optional<RegularFile> opened_;
 };
 
 /// Prints help in groups, with range and default of each option at its end.
@@ -238,13 +251,15 @@ void prepare_command_line(CLI::App& app, ProgramNotes const& notes) {
 }
 
 void add_config_option(CLI::App& app) {
+    auto const file = std::make_shared<ConfigFile>(&app);
     app.set_config(
            "--config", "",
            "Take options from this file that are not on the command line: a line OPTION = VALUE each, the option "
            "without dashes, a flag = true")
         ->type_name("FILE")
-        ->group("Help");
-    app.config_formatter(std::make_shared<ConfigFile>(&app));
+        ->group("Help")
+        ->transform([file](std::string const& name) { return file->open(name); });
+    app.config_formatter(file);
 }
 
 void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
@@ -283,8 +298,8 @@ void parse_command_line(CLI::App& app, int argc, char const* const* argv) {
 }
 
 UsageProblem usage_problem(CLI::App const& app, CLI::ParseError const& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::FileError)) {
-        return {"configuration file '" + app.get_config_ptr()->as<std::string>() + "' cannot be read", 1};
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::FileError)) { // no other file is read
+        return {std::static_pointer_cast<ConfigFile>(app.get_config_formatter())->problem(), 1};
     }
     return usage_problem(error.what());
 }

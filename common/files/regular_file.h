@@ -23,14 +23,15 @@ public:
     explicit operator bool() const { return descriptor_ >= 0; }
     /// Why it is not open, a phrase; empty where it is.
     std::string const& problem() const { return problem_; }
+    /// A name of this very file, for libraries that open files by themselves; valid while this lives. Where it is not
+    /// open, there is nothing of that name.
+    std::string name() const;
 
     // The following is for an open file.
     std::uint64_t bytes() const { return bytes_; }
     mode_t mode() const { return mode_; }
     /// Where it lies, without links.
     std::filesystem::path canonical() const;
-    /// A name of this very file, for libraries that open files by themselves; valid while this lives.
-    std::string name() const;
     /// Reads what comes next; false where the file has less than that.
     bool read(void* to, std::size_t count) const;
 

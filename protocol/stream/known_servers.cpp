@@ -7,9 +7,11 @@
 
 #include <boost/asio/ip/address.hpp>
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 #include "protocol/stream/user_folders.h"
 
 namespace framelet {
@@ -37,7 +39,8 @@ std::string canonical(std::string server) {
 }
 
 std::optional<std::string> find(std::filesystem::path const& file, std::string const& server) {
-    std::ifstream lines(file);
+    RegularFile const opened(file);
+    std::ifstream lines(opened.name());
     for (std::string line; std::getline(lines, line);) {
         std::istringstream words(line);
         std::string name, known;
@@ -50,7 +53,8 @@ std::optional<std::string> find(std::filesystem::path const& file, std::string c
 
 /// True for a file whose last line has no end, as some editors leave it.
 bool ends_amid_a_line(std::filesystem::path const& file) {
-    std::ifstream bytes(file, std::ios::binary | std::ios::ate);
+    RegularFile const opened(file);
+    std::ifstream bytes(opened.name(), std::ios::binary | std::ios::ate);
     if (!bytes || bytes.tellg() <= 0) {
         return false;
     }
@@ -58,13 +62,15 @@ bool ends_amid_a_line(std::filesystem::path const& file) {
     return bytes.get() != '\n';
 }
 
-/// Adds a line for a server; false where it could not be written.
+/// Adds a line for a server; false where it could not be written, or is not a file.
 bool add(std::filesystem::path const& file, std::string const& server, std::string const& known) {
-    int const descriptor = ::open(file.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0600);
+    constexpr int adds = O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK | O_NOCTTY;
+    int const descriptor = ::open(file.c_str(), adds, 0600);
+    struct stat found {};
+    bool const is_file = descriptor >= 0 && ::fstat(descriptor, &found) == 0 && S_ISREG(found.st_mode);
     std::string const line = (ends_amid_a_line(file) ? "\n" : "") + server + " " + known + "\n";
     // The line is written by one call, because other viewers may add theirs.
-    bool const written =
-        descriptor >= 0 && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
+    bool const written = is_file && ::write(descriptor, line.data(), line.size()) == static_cast<ssize_t>(line.size());
     ::close(descriptor);
     return written;
 }

@@ -44,7 +44,7 @@ void remove_abandoned(std::filesystem::path const& folder) {
         if (!entry.path().filename().string().starts_with(name_prefix())) {
             continue;
         }
-        int const descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_CLOEXEC);
+        int const descriptor = ::open(entry.path().c_str(), O_RDONLY | O_NONBLOCK | O_NOFOLLOW | O_CLOEXEC);
         if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) == 0) {
             ::unlink(entry.path().c_str());
         }

@@ -148,7 +148,7 @@ bool Session::is_served() const {
 
 bool Session::is_ready() const {
     std::scoped_lock const lock(mutex_);
-    return !earlier_ || camera_number_ > 0;
+    return camera_number_ > 0;
 }
 
 std::shared_ptr<Session> Session::earlier() const {
@@ -311,11 +311,14 @@ bool Session::receive_ack(Ack const& ack) {
 }
 
 /// Takes in what the viewer has evicted. What waits is bounded: a viewer that evicts more than it can hold is not
-/// heard.
+/// heard, nor is one that was sent nothing.
 void Session::receive_evicted(Evicted gone) {
     constexpr std::size_t most_waiting = std::size_t{1} << 18;
     std::scoped_lock const lock(mutex_);
     ++evicted_;
+    if (last_batch_ == 0) {
+        return;
+    }
     waiting_evicted_ += gone.framelets.size() + 1;
     if (waiting_evicted_ <= most_waiting) {
         waiting_events_.push_back({seconds_of(std::chrono::steady_clock::now()), std::move(gone)});

@@ -74,8 +74,8 @@ public:
     bool is_parked() const;
     /// True where it is open or parked: batches are made for it.
     bool is_served() const;
-    /// False where it has something to take over and no camera has come yet: what is sent now might come before its
-    /// Welcome.
+    /// False while no camera has come. Nothing is made for the viewer before: memory is set aside for its camera, and
+    /// what is sent might come before its Welcome.
     bool is_ready() const;
     /// The session that it has to `take_over`, which has none itself; null: none.
     std::shared_ptr<Session> earlier() const;

@@ -3,9 +3,13 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <thread>
 
+#include <fcntl.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "client/core/camera/camera_path.h"
 #include "client/window/kept/user_files.h"
@@ -112,6 +116,17 @@ TEST(Bookmarks, ABrokenFileIsOneLineAndIsKept) {
         EXPECT_EQ(kept.str(), text);
         EXPECT_EQ(Bookmarks(file).all().size(), 1u);
     }
+}
+
+TEST(Bookmarks, APipeInPlaceOfAFileIsNotRead) {
+    OwnFolder const folder;
+    auto const file = folder.path() / "scene.json";
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    std::jthread writer([&] { std::ofstream(file) << R"({"cameras": []})"; }); // waits for somebody who reads
+    EXPECT_NE(Bookmarks(file).complaint().find(file.string()), std::string::npos);
+    int const reader = ::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC);
+    writer.join();
+    ::close(reader);
 }
 
 TEST(Bookmarks, AFolderThatCannotBeWrittenIsALine) {

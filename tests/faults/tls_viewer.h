@@ -12,7 +12,9 @@ namespace framelet {
 /// SIGPIPE must be ignored: OpenSSL writes to a connection that has ended too.
 class TlsViewer : public RawViewer {
 public:
-    TlsViewer(std::uint16_t port, Hello const& hello) : RawViewer(port, Silent{}) {
+    TlsViewer(std::uint16_t port, Hello const& hello,
+              boost::asio::ip::address_v4 const& source = boost::asio::ip::address_v4::loopback())
+        : RawViewer(port, Silent{}, source) {
         SSL_set_fd(tls_.get(), socket());
         is_secure_ = SSL_connect(tls_.get()) == 1;
         send(hello);

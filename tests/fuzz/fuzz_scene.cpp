@@ -1,7 +1,5 @@
-// Reads scene files. Input: one byte, the format; what is in the file. Formats whose memory only the system bounds are
-// left out, since the sanitizer ends a program that is refused memory. Among them are PLY, whose lists in the body say
-// how long they are, and OFF, whose header Assimp reads where `check_mesh_header` finds none. What an STL file promises
-// Assimp compares with its size.
+// Reads scene files. Input: one byte, the format; what is in the file. The formats are those that are read here. What
+// Assimp reads is left out: only the system bounds its memory, and the sanitizer ends a program that is refused some.
 #include <array>
 #include <string>
 

@@ -318,17 +318,6 @@ TEST(Loopback, TokenIsAsked) {
     }
 }
 
-/// Makes a certificate for 127.0.0.1, signed with its own key; returns the files of both.
-std::pair<std::string, std::string> make_certificate(TemporaryFolder const& folder, std::string const& name) {
-    std::string const key = (folder.path() / (name + "-key.pem")).string();
-    std::string const certificate = (folder.path() / (name + "-cert.pem")).string();
-    Process openssl("/usr/bin/openssl",
-                    {"req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "1", "-keyout", key, "-out", certificate,
-                     "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"});
-    EXPECT_EQ(openssl.wait(60s), 0) << openssl.errors();
-    return {certificate, key};
-}
-
 TEST(Loopback, TlsProtectsAndIsChecked) {
     TemporaryFolder folder;
     auto const [certificate, key] = make_certificate(folder, "own");

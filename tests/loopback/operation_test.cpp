@@ -8,11 +8,6 @@
 #include <sstream>
 #include <thread>
 
-#include <boost/asio/connect.hpp>
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
-#include <boost/beast/core.hpp>
-#include <boost/beast/http.hpp>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <pty.h>
@@ -20,6 +15,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "tests/loopback/metrics_page.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::test {
@@ -63,31 +59,6 @@ TEST(Operation, WhatCannotBePrintedIsAFailure) {
         Process program("/bin/sh", arguments);
         EXPECT_EQ(program.wait(patience), 1) << words[1];
         EXPECT_TRUE(has(program.errors(), "cannot write to standard output")) << program.errors();
-    }
-}
-
-/// A tree as deep as this takes Assimp's stack.
-TEST(Operation, ASceneThatEndsItsReaderIsALine) {
-    TemporaryFolder const folder;
-    std::string nodes, ends;
-    for (int i = 0; i < 200'000; ++i) {
-        nodes += "<node>";
-        ends += "</node>";
-    }
-    std::string const scene = folder.write(
-        "deep.dae", "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" "
-                    "version=\"1.4.1\"><asset/><library_visual_scenes><visual_scene id=\"s\">" +
-                        nodes + ends +
-                        "</visual_scene></library_visual_scenes><scene><instance_visual_scene "
-                        "url=\"#s\"/></scene></COLLADA>");
-    for (std::vector<std::string> const& words : {std::vector<std::string>{scene}, {"--info", scene}}) {
-        Process server(FRAMELET_SERVER, words);
-        EXPECT_EQ(server.wait(patience), 1);
-        EXPECT_EQ(std::ranges::count(server.errors(), '\n'), 1) << server.errors();
-        EXPECT_TRUE(has(server.errors(), "deep.dae': ")) << server.errors();
-#ifndef FRAMELET_SANITIZE // a sanitizer has last words of its own
-        EXPECT_TRUE(has(server.errors(), "deep.dae': it ends the process that reads it")) << server.errors();
-#endif
     }
 }
 
@@ -265,49 +236,6 @@ TEST(Operation, WhatViewersHadThatHaveLeftIsGivenBack) {
     after_viewers(8);
     EXPECT_TRUE(eventually([&] { return resident_megabytes(server.process().pid()) < one + 40; }))
         << resident_megabytes(server.process().pid()) << " MB, with one viewer " << one;
-}
-
-namespace http = boost::beast::http;
-using boost::asio::ip::tcp;
-
-tcp::socket connected(boost::asio::io_context& io, std::string const& address) {
-    auto const colon = static_cast<std::ptrdiff_t>(address.rfind(':'));
-    tcp::socket socket(io);
-    boost::asio::connect(socket, tcp::resolver(io).resolve(std::string(address.begin(), address.begin() + colon),
-                                                           std::string(address.begin() + colon + 1, address.end())));
-    return socket;
-}
-
-http::response<http::string_body> ask(std::string const& address, std::string const& target,
-                                      http::verb verb = http::verb::get) {
-    boost::asio::io_context io;
-    tcp::socket socket = connected(io, address);
-    http::request<http::empty_body> request(verb, target, 11);
-    request.set(http::field::host, address);
-    http::write(socket, request);
-    boost::beast::flat_buffer buffer;
-    http::response<http::string_body> answer;
-    http::read(socket, buffer, answer);
-    return answer;
-}
-
-double metric(std::string const& page, std::string const& name) {
-    std::size_t const at = page.find("\n" + name + " ");
-    return at == std::string::npos ? -1 : std::stod(page.substr(at + name.size() + 2));
-}
-
-/// Address of the port for figures, as the server says it.
-std::string metrics_address(ServerProcess& server) {
-    std::string const before = "metrics at http://";
-    for (auto const end = std::chrono::steady_clock::now() + patience; std::chrono::steady_clock::now() < end;) {
-        std::string const told = server.process().output();
-        std::size_t const at = told.find(before);
-        if (std::size_t const slash = told.find("/metrics", at);
-            at != std::string::npos && slash != std::string::npos) {
-            return told.substr(at + before.size(), slash - at - before.size());
-        }
-    }
-    return "";
 }
 
 TEST(Operation, PrometheusAndHealthChecksAreAnswered) {

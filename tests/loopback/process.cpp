@@ -88,6 +88,19 @@ std::string TemporaryFolder::read(std::string const& name) const {
     return read_file(path_ / name);
 }
 
+std::pair<std::string, std::string> make_certificate(TemporaryFolder const& folder, std::string const& name,
+                                                     std::string const& kind) {
+    std::string const key = (folder.path() / (name + "-key.pem")).string();
+    std::string const certificate = (folder.path() / (name + "-cert.pem")).string();
+    Process openssl("/usr/bin/openssl",
+                    {"req", "-x509", "-newkey", kind, "-nodes", "-days", "1", "-keyout", key, "-out", certificate,
+                     "-subj", "/CN=localhost", "-addext", "subjectAltName=IP:127.0.0.1"});
+    if (openssl.wait(std::chrono::seconds(60)) != 0) {
+        throw std::runtime_error("cannot make a certificate: " + openssl.errors());
+    }
+    return {certificate, key};
+}
+
 ServerProcess::ServerProcess(std::string const& scene, std::vector<std::string> options)
     : ServerProcess(of_program(FRAMELET_SERVER, server_arguments(scene, std::move(options)))) {}
 

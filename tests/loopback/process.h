@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <sys/types.h>
@@ -30,6 +31,11 @@ public:
 private:
     std::filesystem::path path_;
 };
+
+/// Makes a certificate for 127.0.0.1, signed with its own key; returns the files of both. `kind`: of key, as OpenSSL
+/// names it.
+std::pair<std::string, std::string> make_certificate(TemporaryFolder const& folder, std::string const& name,
+                                                     std::string const& kind = "rsa:2048");
 
 /// A child with its stdout and stderr in files, and nothing on stdin. Killed when it goes out of scope.
 class Process {

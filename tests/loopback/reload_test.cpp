@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "client/core/client_core.h"
+#include "tests/loopback/metrics_page.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::test {
@@ -176,6 +177,55 @@ TEST_F(Reloading, WhileEverythingMovesItDoesNoHarm) {
         ASSERT_TRUE(other.comes_back(i)) << server.process().errors();
     }
     EXPECT_GT(viewer.core->status().clock.time, 0) << "the clock goes on";
+}
+
+/// A triangle, as a .gltf file, and so many cameras.
+std::string triangle_and_cameras(int cameras) {
+    std::string nodes = R"({"mesh":0})", roots = "0";
+    for (int i = 1; i <= cameras; ++i) {
+        nodes += R"(,{"camera":0})";
+        roots += "," + std::to_string(i);
+    }
+    return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[)" + roots + R"(]}],"nodes":[)" + nodes +
+           R"(],"cameras":[{"type":"perspective","perspective":{"yfov":1,"znear":1}}],)"
+           R"("meshes":[{"primitives":[{"attributes":{"POSITION":0}}]}],)"
+           R"("accessors":[{"bufferView":0,"componentType":5126,"count":3,"type":"VEC3","min":[0,0,0],"max":[1,1,0]}],)"
+           R"("bufferViews":[{"buffer":0,"byteLength":36}],"buffers":[{"byteLength":36,"uri":)"
+           R"("data:;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]})";
+}
+
+TEST_F(Reloading, WhoIsServedGoesOnWhileASceneWithVeryManyCamerasIsRead) {
+    std::string const text = folder.write("scene.gltf", triangle_and_cameras(1));
+    ServerProcess server(text, {"--paused", "--insecure", "--metrics", "0"});
+    std::string const address = metrics_address(server);
+    Viewer viewer(server.address());
+    ASSERT_TRUE(viewer.comes_to_rest());
+    folder.write("scene.gltf", triangle_and_cameras(120'000));
+    server.process().signal(SIGHUP);
+    std::atomic<int> well = 0, unwell = 0;
+    std::jthread health([&](std::stop_token const& stop) {
+        while (!stop.stop_requested()) {
+            ++(ask(address, "/health").result() == http::status::ok ? well : unwell);
+            std::this_thread::sleep_for(5ms);
+        }
+    });
+    int looks = 0; // that were answered
+    for (std::uint64_t batches = 0; viewer.core->statistics().reconnections == 0; ++looks) {
+        batches = viewer.core->statistics().batches;
+        float const aside = 0.01f * static_cast<float>(1 + looks % 100);
+        viewer.core->set_view(look_at({3 + aside, 2, 5}, {0, 1, 0}, {0, 1, 0}, 0.9f), {160, 90});
+        ASSERT_TRUE(viewer.sees([&] {
+            return viewer.core->statistics().batches > batches || viewer.core->statistics().reconnections > 0;
+        })) << looks;
+    }
+    health.request_stop();
+    health.join();
+    EXPECT_GT(well, 3);
+    EXPECT_EQ(unwell, 0);
+    EXPECT_GT(looks, 3) << "otherwise this tests nothing: " << server.process().errors();
+    ASSERT_TRUE(viewer.comes_back(1)) << server.process().errors();
+    EXPECT_GT(viewer.core->welcome().cameras.size(), 1u);
+    EXPECT_TRUE(viewer.comes_to_rest());
 }
 
 /// Address space that a process may have, bytes; RLIM_INFINITY: as much as it likes.

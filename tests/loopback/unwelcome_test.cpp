@@ -220,6 +220,7 @@ TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoServerFromStarting) {
     for (std::vector<std::string> const& options : {std::vector<std::string>{"--token-file", pipe},
                                                     {"--control-token-file", pipe},
                                                     {"--record-events", pipe},
+                                                    {"--config", pipe},
                                                     {"--tls-cert", pipe, "--tls-key", file}}) {
         std::vector<std::string> arguments{scene_file, "--port", "0"};
         arguments.insert(arguments.end(), options.begin(), options.end());
@@ -227,6 +228,18 @@ TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoServerFromStarting) {
         EXPECT_EQ(server.wait(patience), 1) << options[0];
         EXPECT_EQ(lines_in(server.errors()), 1u) << server.errors();
         EXPECT_NE(server.errors().find(pipe), std::string::npos) << server.errors();
+    }
+}
+
+TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoViewerFromStarting) {
+    TemporaryFolder folder;
+    std::string const pipe = (folder.path() / "pipe").string();
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+    ServerProcess const server(scene_file, {"--paused", "--insecure"});
+    for (std::string const option : {"--config", "--camera"}) {
+        std::string const refused = connect_client(server, {option, pipe});
+        EXPECT_EQ(lines_in(refused), 1u) << refused;
+        EXPECT_NE(refused.find(pipe), std::string::npos) << option << ": " << refused;
     }
 }
 

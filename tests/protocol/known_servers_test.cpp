@@ -2,7 +2,10 @@
 
 #include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "common/error.h"
 
@@ -68,6 +71,18 @@ TEST_F(KnownServers, AFileWhoseLastLineHasNoEndIsAddedTo) {
     EXPECT_TRUE(judge_certificate(file_, "two:7070", "BB:02").is_trusted);
     EXPECT_FALSE(judge_certificate(file_, "two:7070", "CC:03").is_trusted) << "it has been remembered";
     EXPECT_TRUE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);
+}
+
+TEST_F(KnownServers, APipeInItsPlaceIsNeitherReadNorWritten) {
+    ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
+    int const pipe = ::open(file_.c_str(), O_RDWR | O_CLOEXEC); // so that nobody waits for the other end
+    std::string const line = "one:7070 AA:01\n";
+    ASSERT_EQ(::write(pipe, line.data(), line.size()), static_cast<ssize_t>(line.size()));
+    EXPECT_FALSE(judge_certificate(file_, "one:7070", "AA:01").is_trusted);
+    EXPECT_THROW(trust_certificate(file_, "two:7070", "BB:02"), InputError);
+    ::close(pipe);
+    EXPECT_TRUE(judge_certificate(file_, "one:7070", "AA:01").is_unknown);
+    EXPECT_THROW(trust_certificate(file_, "two:7070", "BB:02"), InputError);
 }
 
 TEST_F(KnownServers, WhatCannotBeRememberedIsNotTrusted) {

@@ -61,6 +61,18 @@ TEST_F(LocalTokenFile, TheSameUserFindsItWhileTheServerLives) {
     EXPECT_EQ(std::distance(std::filesystem::directory_iterator(state()), {}), 1) << "the lock";
 }
 
+TEST_F(LocalTokenFile, APipeInPlaceOfAFileIsNotWaitedFor) {
+    std::filesystem::path file;
+    {
+        LocalToken const token({here});
+        file = the_file();
+    }
+    ASSERT_EQ(::mkfifo(file.c_str(), 0600), 0);
+    EXPECT_EQ(read_local_token(here), "");
+    LocalToken const token({here});
+    EXPECT_EQ(read_local_token(here), token.token());
+}
+
 /// Another user could, of a folder that others may read.
 TEST_F(LocalTokenFile, WhoeverLocksTheFolderHoldsNobodyUp) {
     ASSERT_TRUE(make_private_folder(state()));

@@ -1,5 +1,7 @@
 #include "server/scene/reading/scene_folder.h"
 
+#include <thread>
+
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
@@ -132,18 +134,54 @@ TEST_F(Outside, MaterialFilesAndPicturesOfAnObj) {
 /// As whoever may write there can do between a look at a file and its reading.
 TEST_F(Outside, AFileThatBecomesALinkIsNotReadWhereThatLeads) {
     outer.write("scenes/b.mtl", "newmtl m\nmap_Kd own.png\n");
-    fs::path const file =
-        outer.write("scenes/b.obj", "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n");
-    auto const swap = [this](std::string_view what, double) {
-        if (what == "images") { // which have been found by then
-            fs::remove(scenes / "own.png");
-            fs::create_symlink("../secret.png", scenes / "own.png");
+    for (fs::path const& file :
+         {outer.write("scenes/b.obj", "mtllib b.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nusemtl m\nf 1/1 2/1 3/1\n"),
+          outer.write("scenes/b.gltf", textured_gltf("own.png"))}) {
+        auto const swap = [this](std::string_view what, double) {
+            if (what == "images" && !fs::is_symlink(scenes / "own.png")) { // they have been found by then
+                fs::rename(scenes / "own.png", scenes / "kept.png");
+                fs::create_symlink("../secret.png", scenes / "own.png");
+            }
+        };
+        Scene const scene = import_scene(file, swap, {});
+        EXPECT_TRUE(scene.images.empty()) << file;
+        EXPECT_NE(joined(scene.warnings).find("own.png': the file cannot be read"), std::string::npos)
+            << file << joined(scene.warnings);
+        fs::rename(scenes / "kept.png", scenes / "own.png");
+    }
+}
+
+/// A buffer is read right after it is found: what is changed all the time is now and then changed between the two.
+TEST_F(Outside, ABufferThatBecomesALinkIsNotReadWhereThatLeads) {
+    fs::path const own = scenes / "own.bin", kept = scenes / "kept.bin", next = scenes / "next.bin";
+    std::string corners(reinterpret_cast<char const*>(triangle_positions.data()), 36);
+    outer.write("scenes/kept.bin", corners);
+    fs::copy_file(kept, own);
+    corners[3] = 0x40; // makes the first number 2
+    outer.write("secret.bin", corners);
+    GltfWriter writer;
+    writer.array(triangle_positions, "VEC3");
+    std::string text = writer.json(one_mesh(R"("attributes":{"POSITION":0})"), false);
+    text.replace(text.find(R"("byteLength":36)"), 15, R"("byteLength":36,"uri":"own.bin")");
+    fs::path const file = outer.write("scenes/a.gltf", text);
+    std::jthread const swapper([&](std::stop_token const& stop) {
+        while (!stop.stop_requested()) {
+            fs::create_hard_link(kept, next);
+            fs::rename(next, own);
+            fs::create_symlink("../secret.bin", next);
+            fs::rename(next, own);
         }
-    };
-    Scene const scene = import_scene(file, swap, {});
-    EXPECT_TRUE(scene.images.empty());
-    EXPECT_NE(joined(scene.warnings).find("own.png': the file cannot be read"), std::string::npos)
-        << joined(scene.warnings);
+    });
+    int read = 0, refused = 0;
+    while (read < 500 || refused < 500) {
+        try {
+            Scene const scene = import_scene(file);
+            ++read;
+            ASSERT_EQ(scene.meshes[0].primitives[0].positions[0].x, 0) << "after " << read << " files and " << refused;
+        } catch (InputError const&) {
+            ++refused;
+        }
+    }
 }
 
 TEST_F(Outside, WhatIsOpenedIsJudged) {

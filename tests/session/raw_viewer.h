@@ -77,8 +77,11 @@ public:
 
 protected:
     struct Silent {};
-    /// Connects, and says nothing.
-    RawViewer(std::uint16_t port, Silent) {
+    /// Connects from this address of the machine, and says nothing.
+    RawViewer(std::uint16_t port, Silent,
+              boost::asio::ip::address_v4 const& source = boost::asio::ip::address_v4::loopback()) {
+        socket_.open(boost::asio::ip::tcp::v4());
+        socket_.bind({source, 0});
         socket_.connect({boost::asio::ip::address_v4::loopback(), port});
         timeval const most_wait{30, 0};
         ::setsockopt(socket_.native_handle(), SOL_SOCKET, SO_RCVTIMEO, &most_wait, sizeof most_wait);

@@ -98,6 +98,7 @@ TEST_P(SessionFailure, WhenItBegins) {
     ASSERT_TRUE(small.watch(is_batch));
     ScarceMemory const scarce(4'000'000); // less than the table of what tiles showed
     RawViewer late(server.port());
+    late.send(camera_update(1, {64, 48}));
     expect_only_one_ends(late, small);
 }
 

@@ -57,24 +57,32 @@ private:
 /// A loop with so many viewers.
 class RunningLoop {
 public:
-    explicit RunningLoop(std::size_t viewers) : scripts_(viewers) {
+    /// `lookers`: the first so many have a camera.
+    RunningLoop(std::size_t viewers, std::size_t lookers) : scripts_(viewers) {
         for (std::size_t i = 0; i < viewers; ++i) {
             sessions_.push_back(open_session(i));
         }
+        for (std::size_t i = 0; i < lookers; ++i) {
+            look(i);
+        }
         LoopOptions options;
-        options.make_stream = [this, next = std::size_t{0}](StreamOptions const&, std::uint32_t) mutable {
-            std::size_t const viewer = next++; // in the order of the sessions
+        options.make_stream = [this](StreamOptions const&, std::uint32_t) {
+            std::size_t const viewer = streams_++; // in the order of the sessions
             return std::make_unique<ScriptedStream>(scripts_[viewer], [this, viewer] { plan_of(viewer); });
         };
         loop_ = std::make_unique<SessionLoop>(posed_, clock_, std::move(options),
                                               SessionLoop::Events{[this] { return sessions_; }, [] {}});
         thread_ = std::thread([this] { loop_->run(); });
     }
+    explicit RunningLoop(std::size_t viewers) : RunningLoop(viewers, viewers) {}
     ~RunningLoop() {
         loop_->stop();
         thread_.join();
     }
 
+    void look(std::size_t viewer) { connections_[viewer]->bring(CameraUpdate{{1, Camera{}, {64, 48}}, -1}); }
+    /// How many streams have been made.
+    std::size_t streams() const { return streams_; }
     void set_takes_more(std::size_t viewer, bool takes_more) { scripts_[viewer].takes_more = takes_more; }
     /// Has the clock set in the first viewer's turn; returns the scene's time when the second viewer hears of it.
     double time_after_setting(SceneTime time) {
@@ -102,6 +110,7 @@ private:
         FakeConnection const& connection = connections_.emplace_back();
         Session::Events events;
         events.admit = [](Hello const&) { return Welcome{}; };
+        events.resize = [](Viewport, bool) { return std::nullopt; };
         events.changed = [] {};
         events.ended = [](std::string const&) {};
         auto session = std::make_shared<Session>(index + 1, connection.stream(), std::move(events));
@@ -122,6 +131,7 @@ private:
     PosedScene posed_{scene_, {}, render_scene_};
     SceneClock clock_{false, std::chrono::steady_clock::now()};
     std::atomic<double> set_time_ = -1;
+    std::atomic<std::size_t> streams_ = 0;
     std::vector<Script> scripts_;
     std::deque<FakeConnection> connections_;
     SessionLoop::Sessions sessions_;
@@ -141,6 +151,15 @@ TEST(SessionLoop, TimeIsSharedAmongThoseThatUseIt) {
     loop.set_takes_more(1, true);
     loop.set_takes_more(2, true);
     EXPECT_TRUE(loop.shares_among(0, 3));
+}
+
+TEST(SessionLoop, AViewerHasAStreamOnceItLooksSomewhere) {
+    RunningLoop loop(3, 2);
+    EXPECT_TRUE(loop.shares_among(0, 2)); // in a turn after one of each
+    EXPECT_EQ(loop.streams(), 2u) << "memory is set aside for a viewer when its camera comes";
+    loop.look(2);
+    EXPECT_TRUE(loop.shares_among(0, 3));
+    EXPECT_EQ(loop.streams(), 3u);
 }
 
 TEST(SessionLoop, WhoKnowsThatTheClockWasSetIsServedByWhatItWasSetTo) {

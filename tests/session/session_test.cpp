@@ -28,6 +28,11 @@ TEST(Session, AFloodOfWhatAViewerEvictsIsBounded) {
         return std::ranges::count_if(
             came, [](StreamEvent const& event) { return std::holds_alternative<Evicted>(event.what); });
     };
+    stream->bring(full);
+    EXPECT_EQ(waiting(), 0) << "who was sent nothing has nothing that it could evict";
+    EncodedBatch batch;
+    batch.number = 1;
+    session->send_batch(batch);
     for (std::size_t i = 0; i < 2 * most_waiting / max_evicted; ++i) {
         stream->bring(full);
     }
@@ -157,6 +162,7 @@ TEST(Session, WhoeverComesBackAgainAndAgainBeforeItsTurnLeavesOneSessionAndItsBo
     Viewed first;
     first.session->start();
     first.stream->bring(Hello{});
+    first.session->send_batch(batch_of_bytes(1, 1));
     auto const evict_as_much_as_is_heard = [](Viewed& viewer) {
         Evicted const full{std::vector<SentTile>(max_evicted, {1, Tile{5}})};
         for (std::size_t i = 0; i < most_waiting / max_evicted; ++i) {
@@ -167,10 +173,10 @@ TEST(Session, WhoeverComesBackAgainAndAgainBeforeItsTurnLeavesOneSessionAndItsBo
     first.session->cut();
     std::vector<std::unique_ptr<Viewed>> returns;
     for (Session* last = first.session.get(); returns.size() < 5; last = returns.back()->session.get()) {
-        ASSERT_TRUE(last->can_be_resumed(0));
+        ASSERT_TRUE(last->can_be_resumed(1));
         Viewed& next = *returns.emplace_back(std::make_unique<Viewed>());
         next.session->start();
-        next.session->resume(last->shared_from_this(), 0);
+        next.session->resume(last->shared_from_this(), 1);
         next.stream->bring(Hello{});
         EXPECT_EQ(next.session->earlier().get(), first.session.get());
         EXPECT_FALSE(last != first.session.get() && (last->earlier() || last->is_parked())) << "nothing is left of it";
@@ -189,6 +195,27 @@ TEST(Session, WhoeverComesBackAgainAndAgainBeforeItsTurnLeavesOneSessionAndItsBo
     }
     EXPECT_GT(framelets, most_waiting / 2);
     EXPECT_LE(framelets, most_waiting);
+}
+
+/// A chain of sessions would take the stack of whoever goes along it.
+TEST(Session, OfVeryManyReturnsBeforeATurnNoneIsLeftButTheLast) {
+    Viewed first;
+    first.session->start();
+    first.stream->bring(Hello{});
+    first.session->cut();
+    auto last = std::make_unique<Viewed>();
+    last->session->resume(first.session, 0);
+    std::weak_ptr<Session> const second = last->session;
+    for (int times = 0; times < 100'000; ++times) {
+        last->session->start();
+        last->stream->bring(Hello{});
+        last->session->cut();
+        auto next = std::make_unique<Viewed>();
+        next->session->resume(last->session, 0);
+        last = std::move(next);
+    }
+    EXPECT_TRUE(second.expired());
+    EXPECT_TRUE(last->session->take_over(*first.session));
 }
 
 TEST(Session, WhatHasBeenGivenUpIsNotTakenOver) {

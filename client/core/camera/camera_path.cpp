@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 
 namespace framelet {
 
@@ -247,7 +248,8 @@ CameraPath parse_camera_path(std::string const& json, std::string const& name) {
 }
 
 CameraPath read_camera_path(std::filesystem::path const& file) {
-    std::ifstream in(file, std::ios::binary);
+    RegularFile const opened(file);
+    std::ifstream in(opened.name(), std::ios::binary);
     std::string text;
     if (in) {
         text.resize(most_bytes + 1);
@@ -255,7 +257,7 @@ CameraPath read_camera_path(std::filesystem::path const& file) {
         text.resize(static_cast<std::size_t>(in.gcount()));
     }
     if (!in.eof() || text.size() > most_bytes) {
-        throw InputError("camera file " + file.string() + ": cannot be read");
+        throw InputError("camera file " + file.string() + ": cannot be read" + (opened ? "" : ": " + opened.problem()));
     }
     return parse_camera_path(text, file.string());
 }

@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "common/error.h"
+#include "common/files/regular_file.h"
 
 namespace framelet {
 
@@ -57,7 +58,8 @@ std::optional<std::string> read_user_file(fs::path const& file) {
     if (file.empty() || fs::status(file, error).type() == fs::file_type::not_found) {
         return std::nullopt;
     }
-    std::ifstream in(file, std::ios::binary);
+    RegularFile const opened(file);
+    std::ifstream in(opened.name(), std::ios::binary);
     std::string text(most_bytes + 1, '\0');
     in.read(text.data(), static_cast<std::streamsize>(text.size()));
     text.resize(static_cast<std::size_t>(in.gcount()));

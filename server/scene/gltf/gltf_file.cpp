@@ -14,6 +14,7 @@
 #include "server/scene/gltf/gltf_document.h"
 #include "server/scene/gltf/gltf_extensions.h"
 #include "server/scene/reading/faults.h"
+#include "server/scene/reading/file_bytes.h"
 #include "server/scene/reading/file_ending.h"
 #include "server/scene/reading/named_file.h"
 
@@ -23,22 +24,6 @@ namespace {
 constexpr std::string_view data_scheme = "data:";
 
 using Bytes = std::vector<std::byte>;
-
-/// `on_bytes` is called with the number of bytes that have been read since the last call.
-Bytes read_bytes(RegularFile const& file, std::string const& name, ImportBudget& budget,
-                 std::function<void(std::size_t)> const& on_bytes) {
-    budget.reserve(file.bytes(), 1); // one file may be named a thousand times
-    Bytes bytes(static_cast<std::size_t>(file.bytes()));
-    constexpr std::size_t part = 8 << 20;
-    for (std::size_t at = 0; at < bytes.size(); at += part) {
-        std::size_t const count = std::min(part, bytes.size() - at);
-        if (!file.read(bytes.data() + at, count)) {
-            throw InputError("file '" + name + "' cannot be read");
-        }
-        on_bytes(count);
-    }
-    return bytes;
-}
 
 std::string decode_uri(std::string_view uri) {
     std::string result;
@@ -114,7 +99,7 @@ public:
         if (!found.remark.empty()) {
             remarks_.push_back(found.remark);
         }
-        return read_bytes(*opened, found.file.string(), budget_, on_bytes_);
+        return read_file(*opened, found.file.string(), budget_, on_bytes_);
     }
 
 private:
@@ -184,7 +169,7 @@ std::unique_ptr<GltfFile> read_gltf(std::filesystem::path const& file, SceneFold
     };
     auto out = std::make_unique<GltfFile>();
     std::span<std::byte const> const bytes =
-        out->memory.emplace_back(read_bytes(opened, file.string(), budget, on_bytes));
+        out->memory.emplace_back(read_file(opened, file.string(), budget, on_bytes));
     GltfContainer const container = open_gltf_container(bytes);
     out->json = parse_gltf_json(container.json, budget);
     out->is_truncated = container.is_cut;

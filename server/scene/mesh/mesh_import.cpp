@@ -5,6 +5,7 @@
 #include "common/error.h"
 #include "server/scene/assimp/assimp_parts.h"
 #include "server/scene/mesh/mtl_text.h"
+#include "server/scene/reading/file_bytes.h"
 #include "server/scene/reading/file_ending.h"
 
 namespace framelet {
@@ -61,15 +62,6 @@ bool is_mesh_file(std::string const& extension) {
     return extension == ".obj" || extension == ".ply" || extension == ".stl";
 }
 
-std::string read_file(RegularFile const& file, std::string const& name, ImportBudget& budget) {
-    budget.reserve(file.bytes(), 1);
-    std::string text(static_cast<std::size_t>(file.bytes()), '\0');
-    if (!file.read(text.data(), text.size())) {
-        throw InputError("file '" + name + "' cannot be read");
-    }
-    return text;
-}
-
 Scene import_mesh(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget,
                   Progress const& progress) {
     Scene scene;
@@ -82,10 +74,10 @@ Scene import_mesh(std::filesystem::path const& file, SceneFolder const& folder, 
             throw InputError("it cannot be read: " + opened.problem());
         }
         ImportBudget(budget).reserve(opened.bytes(), memory_per_file_byte);
-        std::string const bytes = read_file(opened, file.string(), budget);
+        std::vector<std::byte> const bytes = read_file(opened, file.string(), budget);
         std::string const extension = lower_extension(file);
         auto* const read = extension == ".obj" ? read_obj : extension == ".ply" ? read_ply : read_stl;
-        read(bytes, reading);
+        read(text_of(bytes), reading);
         reading.tell(bytes.size(), bytes.size());
         scene.is_truncated = reading.is_truncated;
     }

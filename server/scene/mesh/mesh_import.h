@@ -43,8 +43,4 @@ void read_obj(std::string_view text, MeshReading& reading);
 void read_ply(std::string_view bytes, MeshReading& reading);
 void read_stl(std::string_view bytes, MeshReading& reading);
 
-/// The bytes of an open file, which are reserved before they are read. Throws InputError, where they cannot be read
-/// with the `name`.
-std::string read_file(RegularFile const& file, std::string const& name, ImportBudget& budget);
-
 } // namespace framelet

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "server/scene/mesh/mesh_import.h"
 #include "server/scene/mesh/mtl_text.h"
+#include "server/scene/reading/file_bytes.h"
 #include "server/scene/reading/named_file.h"
 #include "server/scene/reading/text_lines.h"
 
@@ -232,9 +233,9 @@ struct ObjReader {
             if (!opened) {
                 throw InputError("file '" + file.string() + "' cannot be read");
             }
-            std::string const text = read_file(*opened, file.string(), reading.budget);
+            std::vector<std::byte> const bytes = read_file(*opened, file.string(), reading.budget);
             LineRemarks of_file(file.filename().string(), reading.warnings);
-            read_mtl(text, of_file, materials);
+            read_mtl(text_of(bytes), of_file, materials);
         } catch (SceneTooLarge const&) {
             throw;
         } catch (InputError const& error) {

@@ -7,6 +7,7 @@
 #include "common/error.h"
 #include "common/files/image_io.h"
 #include "common/files/picture_header.h"
+#include "server/scene/reading/file_bytes.h"
 
 namespace framelet {
 namespace {
@@ -36,17 +37,12 @@ private:
     std::uint64_t const bytes_;
 };
 
-std::vector<std::byte> read_file(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget) {
+std::vector<std::byte> read_image(std::filesystem::path const& file, SceneFolder const& folder, ImportBudget& budget) {
     std::optional<RegularFile> const opened = folder.open(file);
-    std::vector<std::byte> bytes;
-    if (opened) {
-        budget.reserve(opened->bytes(), 1);
-        bytes.resize(opened->bytes());
-    }
-    if (!opened || !opened->read(bytes.data(), bytes.size())) {
+    if (!opened) {
         throw InputError("cannot read image '" + file.string() + "': the file cannot be read");
     }
-    return bytes;
+    return read_file(*opened, file.string(), budget);
 }
 
 } // namespace
@@ -73,7 +69,7 @@ std::vector<std::shared_ptr<Picture const>> load_images(std::span<EncodedImage c
                 throw InputError(image.problem.empty() ? "image '" + image.name + "' is missing" : image.problem);
             }
             std::vector<std::byte> const in_file =
-                image.bytes.empty() ? read_file(image.file, folder, budget) : std::vector<std::byte>();
+                image.bytes.empty() ? read_image(image.file, folder, budget) : std::vector<std::byte>();
             auto const bytes = image.bytes.empty() ? std::span(in_file) : image.bytes; // else they have been counted
             Reserved const beside(budget, bytes_beside(bytes));
             pictures[i] = std::make_shared<Picture const>(
