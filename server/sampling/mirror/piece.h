@@ -27,13 +27,14 @@ struct Piece {
     SceneTime scene_time = 0; ///< when it was rendered
     Drift drift; ///< at the centre
     BodyNumber body = static_body;
-    bool is_outlier = false; ///< its samples lie on no layer
-    bool moves = false; ///< something in its framelet may move, being on a body or deforming
-    bool is_brief = false; ///< as of `FrameletShape`: the viewer holds it with what stands
-    bool rests = false; ///< nothing in its framelet moves about its scene time: the viewer holds it with what stands
-    bool is_replaced = false; ///< a newer framelet lies in its place: it is held no longer
-    bool is_supersampled = false; ///< its samples are means of four rays each
-    bool reflects = false; ///< shows a reflection somewhere, which moves otherwise than the surface
+    bool is_outlier : 1 = false; ///< its samples lie on no layer
+    bool moves : 1 = false; ///< something in its framelet may move, being on a body or deforming
+    bool is_brief : 1 = false; ///< as of `FrameletShape`: the viewer holds it with what stands
+    bool rests : 1 =
+        false; ///< nothing in its framelet moves about its scene time: the viewer holds it with what stands
+    bool is_replaced : 1 = false; ///< a newer framelet lies in its place: it is held no longer
+    bool is_supersampled : 1 = false; ///< its samples are means of four rays each
+    bool reflects : 1 = false; ///< shows a reflection somewhere, which moves otherwise than the surface
     SentTile of; ///< the framelet that it is part of
 };
 
