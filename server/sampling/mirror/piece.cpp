@@ -166,7 +166,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
     auto outliers = shape.outliers.begin();
     for (std::uint32_t first = 0; first < framelet_samples; first += count) {
         float const local = std::reduce(details.begin() + first / 4, details.begin() + (first + count) / 4) /
-                            static_cast<float>(count / 4);
+                            (0.25f * static_cast<float>(count));
         float const detail = (1 - common_share) * local + common_share * common;
         std::array<Sum, max_layers> sums;
         OutlierSum all;
