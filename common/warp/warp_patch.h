@@ -13,9 +13,9 @@ namespace framelet {
 constexpr std::int32_t group_of(std::size_t slot, std::uint32_t view, int depth) {
     return static_cast<std::int32_t>(slot << 24 | view << 4) + depth;
 }
+inline constexpr std::int32_t drifting_bit = 1 << 30;
 /// The group of what drifts over the surface that it lies on (a shadow): it adds up with its like only, not with what
 /// it comes over.
-inline constexpr std::int32_t drifting_bit = 1 << 30;
 constexpr std::int32_t drifting_group(std::int32_t group) {
     return group | drifting_bit;
 }

@@ -106,6 +106,7 @@ Drift drift_of(Course const& off, std::array<bool, motion_times> const& usable, 
         glm::length(drift.velocity) * step <= rounding && glm::length(drift.acceleration) * step * step <= 2 * rounding;
     if (rests) {
         drift.velocity = drift.acceleration = Vec3(0);
+        drift.swing = 0;
     }
     bool const is_finite =
         std::isfinite(glm::dot(drift.velocity, Vec3(1)) + glm::dot(drift.acceleration, Vec3(1)) + drift.jerk);

@@ -17,8 +17,8 @@ using Course = std::array<Vec3, motion_times>;
 Course course_of(Instance const& instance, HitPacket const& hits, int lane);
 
 /// The drift of what is off where it was taken to be by so much at the other times, metres: a parabola through the
-/// present and the times about it, or as many of these as are `usable`. The jerk is by how much that misses the last
-/// two. What is within `rounding` metres is 0.
+/// present and the times about it, or as many of these as are `usable`; or what swings or goes round through them where
+/// that misses the last two by less, which is the jerk. What is within `rounding` metres is 0.
 Drift drift_of(Course const& off, std::array<bool, motion_times> const& usable, float rounding);
 
 /// Metres by which positions of this size may be off by rounding.
