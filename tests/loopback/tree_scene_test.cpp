@@ -56,8 +56,8 @@ std::string fbx() {
 /// A ZIP archive of files that are stored as they are.
 std::string zip(std::vector<std::pair<std::string, std::string>> const& files) {
     auto const put = [](std::string& out, std::size_t bytes, std::size_t number) {
-        for (std::size_t i = 0; i < bytes; ++i) {
-            out += static_cast<char>(number >> (8 * i));
+        for (std::size_t i = 0; i < bytes; ++i, number >>= 8U) {
+            out += static_cast<char>(number);
         }
     };
     std::string out, directory;
