@@ -85,12 +85,19 @@ void FrameWriter::add(Picture const& picture, bool changed, bool taken) {
     if (!taken) {
         return;
     }
-    if (std::exchange(is_new_, false)) {
-        frame.picture = picture;
-    }
     std::unique_lock lock(mutex_);
     changed_.wait(lock, [this] { return !writes_ || waiting_.size() < most_waiting || failure_; });
     throw_if_failed();
+    if (std::exchange(is_new_, false)) {
+        if (written_.empty()) {
+            written_.emplace_back();
+        }
+        frame.picture = std::move(written_.back());
+        written_.pop_back();
+        lock.unlock();
+        *frame.picture = picture;
+        lock.lock();
+    }
     writes_ = writes_ || waiting_.size() * picture.rgba.size() > most_kept_bytes;
     waiting_.push_back(std::move(frame));
     changed_.notify_all();
@@ -128,7 +135,7 @@ void FrameWriter::run() {
         if (waiting_.empty()) {
             return;
         }
-        Frame const frame = std::move(waiting_.front());
+        Frame frame = std::move(waiting_.front());
         waiting_.pop_front();
         changed_.notify_all();
         lock.unlock();
@@ -144,6 +151,9 @@ void FrameWriter::run() {
             failure_ = std::move(failure);
             changed_.notify_all();
             return;
+        }
+        if (frame.picture) {
+            written_.push_back(std::move(*frame.picture));
         }
     }
 }

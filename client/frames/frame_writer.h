@@ -10,6 +10,7 @@
 #include <optional>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "client/frames/frame_sink.h"
 #include "client/frames/when_written.h"
@@ -70,6 +71,7 @@ private:
     std::mutex mutex_; // guards what follows
     std::condition_variable changed_;
     std::deque<Frame> waiting_;
+    std::vector<Picture> written_; ///< their memory is taken again
     bool writes_; ///< what waits is written; else it is kept
     bool stopping_ = false;
     std::optional<std::string> failure_;

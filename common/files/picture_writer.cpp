@@ -1,12 +1,15 @@
 #include "common/files/picture_writer.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csetjmp>
+#include <cstdint>
 #include <cstdio>
 #include <cstring>
 #include <memory>
 #include <new>
 #include <string>
+#include <vector>
 
 #include <png.h>
 
@@ -106,11 +109,24 @@ void write_png(std::filesystem::path const& file, Picture const& picture) {
 }
 
 void write_ppm(std::filesystem::path const& file, Picture const& picture) {
-    std::string content = "P6\n" + std::to_string(picture.width) + " " + std::to_string(picture.height) + "\n255\n";
-    for (std::size_t i = 0; i < picture.rgba.size(); i += 4) {
-        content.append(reinterpret_cast<char const*>(&picture.rgba[i]), 3);
-    }
-    write_content(file, content);
+    constexpr std::size_t channels = 3;
+    constexpr std::size_t at_once = 16384; // pixels: what is written stays in the cache of the processor
+    write_file(file, [&](std::FILE* stream) -> std::string {
+        std::fprintf(stream, "P6\n%d %d\n255\n", picture.width, picture.height);
+        std::vector<std::uint8_t> colors;
+        std::size_t const pixels = picture.rgba.size() / 4;
+        for (std::size_t begin = 0; begin < pixels; begin += at_once) {
+            std::size_t const end = std::min(pixels, begin + at_once);
+            colors.resize(channels * (end - begin));
+            for (std::size_t i = begin; i < end; ++i) {
+                std::copy_n(&picture.rgba[4 * i], channels, &colors[channels * (i - begin)]);
+            }
+            if (std::fwrite(colors.data(), 1, colors.size(), stream) != colors.size()) {
+                break;
+            }
+        }
+        return std::ferror(stream) == 0 ? "" : std::strerror(errno);
+    });
 }
 
 void write_exr(std::filesystem::path const& file, Picture const& picture, std::vector<float> const& depths) {

@@ -16,7 +16,7 @@ namespace framelet {
 namespace {
 
 TEST(ImageIo, RoundTripsAreExact) {
-    Picture picture(37, 19);
+    Picture picture(237, 119); // of more pixels than are written at once
     for (std::size_t i = 0; i < picture.rgba.size(); ++i) {
         picture.rgba[i] = i % 4 == 3 ? 255 : static_cast<std::uint8_t>(i * 31);
     }
