@@ -262,6 +262,41 @@ TEST(MomentPlan, RaysAreAsCheapAsTheLinkLeavesTimeForThem) {
     EXPECT_GT(before, 0);
 }
 
+/// Of a picture of which one half has changed and the other one is coarse.
+TEST(MomentPlan, TheBiasChoosesBetweenWhatIsOldAndWhatIsCoarse) {
+    constexpr int middle = 128;
+    auto const busy = [](float x, float y) { return Seen{10, 0.5f + 0.2f * std::sin(1.7f * x) * std::sin(1.3f * y)}; };
+    std::vector<CellFault> changed;
+    for (int y = cell_side / 2; y < viewport.height; y += cell_side) {
+        for (int x = cell_side / 2; x < middle; x += cell_side) {
+            changed.push_back({Vec2(x, y), cell_side, false, 0.01f});
+        }
+    }
+    double least_changed = -1, first_changed = -1, most_depth = INFINITY;
+    for (float const bias : {-1.0f, -0.5f, 0.0f, 0.5f, 1.0f}) {
+        Planner planner;
+        planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth() - 1, busy));
+        planner.mirror.look(view_at(0), no_motions);
+        planner.mirror.mark(changed);
+        double const samples = 0.5 * viewport.width * viewport.height;
+        planner.plan.find(planner.mirror, planner.field, {samples, {}, {}, 0, 0, 1, bias}, planner.rated);
+        double in_changed = 0, all = 0, depths = 0;
+        for (RatedPatch const& entry : planner.rated) {
+            int const left = plane.tile_rect(entry.patch.node).left;
+            in_changed += left < middle ? entry.cost : 0;
+            all += entry.cost;
+            depths += entry.cost * entry.patch.depth;
+        }
+        ASSERT_GT(all, 0) << bias;
+        EXPECT_GE(in_changed / all, least_changed) << bias;
+        EXPECT_LE(depths / all, most_depth) << bias;
+        least_changed = in_changed / all;
+        most_depth = depths / all;
+        first_changed = bias == -1 ? in_changed / all : first_changed;
+    }
+    EXPECT_GT(least_changed, first_changed + 0.2);
+}
+
 TEST(MomentPlan, WhatComesIntoViewIsFirst) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);

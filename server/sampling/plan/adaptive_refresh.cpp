@@ -274,7 +274,8 @@ void AdaptiveRefresh::plan_moment(RefreshInput const& input, double samples, Ref
                               costs_,
                               input.moment->begun,
                               input.samples_per_second * plan_overhead,
-                              static_cast<float>(rays_a_sample(input))};
+                              static_cast<float>(rays_a_sample(input)),
+                              input.bias};
     moments_.plan(field_, budget, rated_);
     append_rated(samples, rays);
 }

@@ -191,6 +191,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     if (region.rendered >= budget.moment_begun) {
         had = std::max(had, region.level + (region.supersampled ? 1 : 0));
     }
+    float const time_weight = std::exp2(2 * budget.bias), space_weight = 1 / time_weight;
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
@@ -218,15 +219,19 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
                 stale = 0;
             }
         }
-        float const now = covered > 0 ? spacing_error(detail, worn) + stale : 0;
+        // What lies between the samples as they were rendered is missing in space, the rest has passed with time.
+        float const missing = spacing_error(detail, std::min(worn, cell.spacing));
+        float const now =
+            covered > 0 ? time_weight * (spacing_error(detail, worn) + stale) + (space_weight - time_weight) * missing
+                        : 0;
         float const bare = pixels - covered;
         stale_sum += covered * stale;
         wrong_sum += covered * now + bare * hole_error;
         FloatLanes const shares = load_lanes((stands ? standing_shares : moved_shares).data());
-        FloatLanes const then = smaller(detail * shares, FloatLanes{} + most_error);
+        FloatLanes const then = space_weight * smaller(detail * shares, FloatLanes{} + most_error);
         FloatLanes const gain = larger(now - then, FloatLanes{} + least);
         gains += covered * (load_lanes(shown_spacings.data()) < too_coarse ? gain : FloatLanes{}) +
-                 bare * larger(hole_error - then, FloatLanes{});
+                 bare * larger(time_weight * hole_error - then, FloatLanes{});
     });
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;

@@ -29,6 +29,7 @@ struct MomentBudget {
     double moment_begun = 0; ///< seconds; what has been rendered since then is of this moment
     double overhead = 0; ///< samples that a plan costs besides, be it short or long
     float rays = 1; ///< rays that there is time for, for each of `samples`; above 1 where the link is scarce
+    float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
 };
 
 class MomentPlan {
