@@ -46,6 +46,29 @@ TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
     EXPECT_GT(found[1].run.bytes, found[0].run.bytes);
 }
 
+/// Joints, morph targets, shadows of what turns: what `compare` shows of them in large, in small.
+TEST_F(Warp, WhatBendsIsNotLeftToTheViewerInVain) {
+    RunParameters parameters = small_run({160, 160}, 12);
+    parameters.seconds = 1;
+    parameters.frames_per_second = 5;
+    auto const errors_in = [&](std::string const& name, std::vector<std::string> const& methods) {
+        auto const scene = load_bench_scene(bundled(name));
+        std::vector<double> errors;
+        for (MethodRecord const& record : records(*scene, methods, parameters)) {
+            errors.push_back(mean_mse(record));
+        }
+        return errors;
+    };
+    for (std::string const name : {"walker", "fan"}) {
+        auto const errors = errors_in(name, {"framelet", "framelet-unwarped"});
+        EXPECT_LT(errors[0], 0.7 * errors[1]) << name;
+    }
+    for (std::string const name : {"walker", "flag"}) {
+        auto const errors = errors_in(name, {"framelet", "framed+warp"});
+        EXPECT_LT(errors[0], 0.9 * errors[1]) << name;
+    }
+}
+
 /// The link's delay is so long that no message of the run knows of the turn.
 TEST_F(Warp, ATurnShowsBeforeAnyMessageKnowsOfIt) {
     auto const scene = load_bench_scene(bundled("teleport"));
