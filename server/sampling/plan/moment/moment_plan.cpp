@@ -192,6 +192,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
         had = std::max(had, region.level + (region.supersampled ? 1 : 0));
     }
     float const time_weight = std::exp2(2 * budget.bias), space_weight = 1 / time_weight;
+    float const hole_weight = std::max(time_weight, space_weight); // a hole is missing in space as in time
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
@@ -231,7 +232,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
         FloatLanes const then = space_weight * smaller(detail * shares, FloatLanes{} + most_error);
         FloatLanes const gain = larger(now - then, FloatLanes{} + least);
         gains += covered * (load_lanes(shown_spacings.data()) < too_coarse ? gain : FloatLanes{}) +
-                 bare * larger(time_weight * hole_error - then, FloatLanes{});
+                 bare * larger(hole_weight * hole_error - then, FloatLanes{});
     });
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;
