@@ -153,9 +153,6 @@ void choose_programs(VerbOptions& options) {
         report.narrow_scenes.clear();
         report.flights.clear();
     }
-    for (char const* const name : {"stop", "globe", "vehicle_chase"}) {
-        report.pictured_scenes.push_back(scene_file(name));
-    }
 }
 
 json answer_pauses(VerbOptions& options) {

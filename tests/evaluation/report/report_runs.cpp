@@ -7,7 +7,6 @@
 #include <memory>
 #include <optional>
 
-#include "common/files/picture_writer.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/own_camera.h"
 #include "tests/evaluation/report/feature_cost.h"
@@ -20,7 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr Viewport screenshot{448, 252};
 /// Number of moments at which both clocks are compared: with few of them what is seen of a cut or a lamp would decide.
 constexpr int clock_moments = 16;
 
@@ -137,31 +135,6 @@ private:
     double start_ = 0; ///< start of the scene's window, likewise
 };
 
-/// Writes the picture that `framelet` shows in the middle of its run, unless it is stored already. Returns the name of
-/// the scene.
-std::string take_screenshot(std::filesystem::path const& scene, ReportOptions const& options, StudyOptions const& study,
-                            RunStore& store) {
-    std::string const name = scene.stem().string();
-    StudyOptions small = study;
-    small.sees_events = true;
-    small.run.viewport = options.quick ? study.run.viewport : screenshot;
-    std::string const run = name + "-picture-" + text_of(small.run.viewport);
-    auto const kept = store.folder() / (run + ".png");
-    store.get(run, [&] {
-        small.run.frames_per_second = options.link_machine;
-        small.run.reference_rate = 10;
-        Subject const subject = prepare(scene, small);
-        write_png(kept, record_method(*subject.scene, subject.reference, "framelet", subject.run, subject.machine,
-                                      study.costs)
-                            .sample);
-        return json(true);
-    });
-    std::filesystem::create_directories(options.documents / "pictures");
-    std::filesystem::copy_file(kept, options.documents / "pictures" / (name + ".png"),
-                               std::filesystem::copy_options::overwrite_existing);
-    return name;
-}
-
 json live_run(std::filesystem::path const& file, LiveOptions const& options, RunStore& store) {
     std::string const name = file.stem().string() +
                              (options.predicts ? "-clocks-"
@@ -206,9 +179,9 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         1 + options.machines.size() * study.methods.size() + options.links.size() * options.linked_methods.size();
     // The noise is asked for with each run, so that runs count twice.
     std::size_t const expected = study.scenes.size() * (2 * runs_a_scene - 2 + 4 + 6 * options.turns.size()) +
-                                 options.pictured_scenes.size() + options.live_scenes.size() + options.flights.size() +
-                                 options.narrow_scenes.size() + options.walks.size() +
-                                 2 * options.clock_scenes.size() * options.clock_sizes.size() + 1;
+                                 options.live_scenes.size() + options.flights.size() + options.narrow_scenes.size() +
+                                 options.walks.size() + 2 * options.clock_scenes.size() * options.clock_sizes.size() +
+                                 1;
     RunStore store(options.folder, figures.commit, expected);
     for (auto const& file : study.scenes) {
         SceneRuns scene(file, study, store);
@@ -234,9 +207,6 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
         own.costs = study.costs;
         figures.walks.push_back(store.get(walk.scene.stem().string() + "-walk-" + text_of(own.viewport),
                                           [&] { return measure_own_camera(walk.scene, walk.camera, own); }));
-    }
-    for (auto const& file : options.pictured_scenes) {
-        figures.pictures.push_back(take_screenshot(file, options, study, store));
     }
     for (auto const& file : options.live_scenes) {
         figures.live.push_back(live_run(file, options.live, store));

@@ -27,7 +27,7 @@ struct ReportOptions {
     double link_machine = 10; ///< machine of the runs over links, samples a displayed pixel and second
     double link_delay = 0.02; ///< delay of links, seconds each way
     std::vector<std::string> linked_methods; ///< methods of the study that also run over links
-    std::vector<std::filesystem::path> live_scenes, clock_scenes, pictured_scenes; ///< files
+    std::vector<std::filesystem::path> live_scenes, clock_scenes; ///< files
     std::vector<Flight> flights; ///< flights on which the real programs go as well
     std::vector<std::filesystem::path> narrow_scenes; ///< scenes that the real programs run over `narrow` too
     LinkParameters narrow{.bits_per_second = 20e6, .delay_seconds = 0.05};
@@ -58,7 +58,6 @@ struct ReportFigures {
     std::vector<nlohmann::json> live, narrow, clocks; ///< as measure_live returns them
     std::vector<nlohmann::json> walks; ///< as measure_own_camera returns them
     nlohmann::json features; ///< as measure_feature_costs returns them
-    std::vector<std::string> pictures; ///< stems of files in the documents' pictures/
     std::string commit; ///< commit of this program
     std::set<std::string> commits; ///< commits of the programs that made the figures
 };
