@@ -84,8 +84,12 @@ void filter_pixels(Picture const& picture, PixelRect const& rect, Picture& filte
                                               {load_pixels(row, x - 1, width), load_pixels(row, x + 1, width),
                                                load_pixels(above, x, width), load_pixels(below, x, width)},
                                               contrast);
-            std::memcpy(filtered.row(y) + 4 * x, &out,
-                        4 * static_cast<std::size_t>(std::min(wide_count, rect.right - x)));
+            std::uint8_t* const to = filtered.row(y) + 4 * x;
+            if (x + wide_count <= rect.right) {
+                store_lanes(out, to); // of a size that the compiler knows
+            } else {
+                std::memcpy(to, &out, 4 * static_cast<std::size_t>(rect.right - x));
+            }
         }
     }
 }

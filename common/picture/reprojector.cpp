@@ -454,21 +454,28 @@ void Reprojector::fill() {
     });
 }
 
-/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew.
+/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew, blocks that follow
+/// each other in a row together, since memory is read fastest in its order.
 void Reprojector::filter(Picture& picture) {
     filtered_.assign(painted_.size(), 0);
-    for_each_block([&](int column, int row, std::size_t index) {
-        auto const is_painted = [&](int x, int y) {
-            return x >= 0 && x < columns_ && y >= 0 && y < rows_ && painted_[index_of(x, y)] != 0;
-        };
-        if (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
-            is_painted(column, row - 1) || is_painted(column, row + 1)) {
-            int const left = column * side;
-            int const top = row * side;
-            filter_pixels(unfiltered_,
-                          {left, top, std::min(left + side, picture.width), std::min(top + side, picture.height)},
-                          picture, parts_.flat_contrast);
-            filtered_[index] = 1;
+    auto const is_painted = [&](int x, int y) {
+        return x >= 0 && x < columns_ && y >= 0 && y < rows_ && painted_[index_of(x, y)] != 0;
+    };
+    tbb::parallel_for(0, rows_, [&](int row) {
+        int first = 0; // of the blocks that are to be written
+        for (int column = 0; column <= columns_; ++column) {
+            if (column < columns_ &&
+                (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
+                 is_painted(column, row - 1) || is_painted(column, row + 1))) {
+                filtered_[index_of(column, row)] = 1;
+                continue;
+            }
+            if (first < column) {
+                PixelRect const blocks{first * side, row * side, std::min(column * side, picture.width),
+                                       std::min((row + 1) * side, picture.height)};
+                filter_pixels(unfiltered_, blocks, picture, parts_.flat_contrast);
+            }
+            first = column + 1;
         }
     });
     painted_.swap(filtered_);

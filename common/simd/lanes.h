@@ -147,6 +147,9 @@ inline bool any_lane(WideInts flags) {
 #ifdef __AVX512F__
     auto const all = reinterpret_cast<__m512i>(flags);
     return _mm512_test_epi32_mask(all, all) != 0;
+#elif defined(__AVX2__)
+    auto const all = reinterpret_cast<__m256i>(flags);
+    return _mm256_testz_si256(all, all) == 0;
 #else
     std::int32_t bits = 0;
     for (int i = 0; i < wide_count; ++i) {
