@@ -245,12 +245,11 @@ void Reprojector::show(FrameletPool const& pool, std::span<PixelRect const> chan
         show_cut(*fullest, picture, repainted);
     } else if (canvas != nullptr) {
         repainted.assign(any ? 1u : 0u, {0, 0, viewport.width, viewport.height});
+    } else if (any) {
+        fill();
+        filter(picture, repainted);
     } else {
-        if (any) {
-            fill();
-            filter(picture);
-        }
-        take_flagged(painted_, columns_, viewport, repainted);
+        repainted.clear();
     }
     has_shown_ = true;
 }
@@ -454,31 +453,21 @@ void Reprojector::fill() {
     });
 }
 
-/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew, blocks that follow
-/// each other in a row together, since memory is read fastest in its order.
-void Reprojector::filter(Picture& picture) {
+/// A block's pixels depend on those beside it: all that lie beside a painted one are written anew. They become
+/// `repainted`, in runs along rows: memory is read fastest in its order.
+void Reprojector::filter(Picture& picture, std::vector<PixelRect>& repainted) {
     filtered_.assign(painted_.size(), 0);
-    auto const is_painted = [&](int x, int y) {
-        return x >= 0 && x < columns_ && y >= 0 && y < rows_ && painted_[index_of(x, y)] != 0;
-    };
-    tbb::parallel_for(0, rows_, [&](int row) {
-        int first = 0; // of the blocks that are to be written
-        for (int column = 0; column <= columns_; ++column) {
-            if (column < columns_ &&
-                (is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
-                 is_painted(column, row - 1) || is_painted(column, row + 1))) {
-                filtered_[index_of(column, row)] = 1;
-                continue;
-            }
-            if (first < column) {
-                PixelRect const blocks{first * side, row * side, std::min(column * side, picture.width),
-                                       std::min((row + 1) * side, picture.height)};
-                filter_pixels(unfiltered_, blocks, picture, parts_.flat_contrast);
-            }
-            first = column + 1;
-        }
+    for_each_block([&](int column, int row, std::size_t index) {
+        auto const is_painted = [&](int x, int y) {
+            return x >= 0 && x < columns_ && y >= 0 && y < rows_ && painted_[index_of(x, y)] != 0;
+        };
+        filtered_[index] = is_painted(column, row) || is_painted(column - 1, row) || is_painted(column + 1, row) ||
+                           is_painted(column, row - 1) || is_painted(column, row + 1);
     });
-    painted_.swap(filtered_);
+    std::ranges::fill(painted_, std::uint8_t{0});
+    take_flagged(filtered_, columns_, {picture.width, picture.height}, repainted);
+    tbb::parallel_for(std::size_t{0}, repainted.size(),
+                      [&](std::size_t i) { filter_pixels(unfiltered_, repainted[i], picture, parts_.flat_contrast); });
 }
 
 } // namespace framelet

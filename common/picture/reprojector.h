@@ -102,7 +102,7 @@ private:
     void for_each_block(Work const& work);
     bool is_beside_hole(int column, int row) const;
     void fill();
-    void filter(Picture& picture);
+    void filter(Picture& picture, std::vector<PixelRect>& repainted);
 
     ReprojectorParts parts_;
     bool has_shown_ = false;

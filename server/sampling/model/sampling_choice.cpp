@@ -41,15 +41,14 @@ BestPeriod const best_period;
 
 SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPrice const& price, int least_level,
                                int most_level, LevelCosts const& costs) {
-    float const time_weight = price.bias == 0 ? 1 : std::exp2(2 * price.bias);
-    float const space_weight = 1 / time_weight;
+    BiasWeights const weights(price.bias);
     float const longest = std::max(life, price.least_period);
     LevelErrors const errors = level_errors(region);
     SamplingChoice best;
     float least = std::numeric_limits<float>::infinity();
     /// Weighs a level, unless what it leaves unresolved alone is too much already.
     auto const offer = [&](int level) {
-        float const unresolved = space_weight * errors.unresolved[static_cast<std::size_t>(level)];
+        float const unresolved = weights.space * errors.unresolved[static_cast<std::size_t>(level)];
         float const cost = price.price * samples_per_pixel(level) * costs[static_cast<std::size_t>(level)];
         if (unresolved + cost / longest >= least) {
             return;
@@ -58,7 +57,7 @@ SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPr
         float paid = unresolved + cost / longest;
         if (region.motion > 0) {
             DriftBounds const bounds = errors.drift[static_cast<std::size_t>(level)];
-            float const most = time_weight * bounds.most;
+            float const most = weights.time * bounds.most;
             float const rate = region.motion * bounds.growth / bounds.most; // 1/s, of the one exponential
             float const left = most * std::exp(-rate * price.latency); // what a refresh can save, fresh as it comes
             float const share = rate * cost / left;
@@ -72,7 +71,7 @@ SamplingChoice choose_sampling(RegionModel const& region, float life, SamplingPr
         if (paid < least) {
             least = paid;
             // The error that is shown knows no bias: takes it out again.
-            float const due = unresolved / space_weight + (paid - unresolved) / time_weight;
+            float const due = unresolved / weights.space + (paid - unresolved) / weights.time;
             best = {level, period, due, period < life};
         }
     };

@@ -9,6 +9,8 @@
 // error at the end of the period.
 #pragma once
 
+#include <cmath>
+
 #include "server/sampling/model/coding_cost.h"
 
 namespace framelet {
@@ -25,6 +27,14 @@ struct SamplingPrice {
     float latency = 0; ///< seconds from rendering to display
     float least_period = 0; ///< seconds; a cycle
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
+};
+
+/// What errors count as the viewer wishes: those of what has passed, those of what is missing between samples. `bias`:
+/// as of `SamplingPrice`; 4 to its power, and the inverse.
+struct BiasWeights {
+    explicit BiasWeights(float bias) : time(bias == 0 ? 1 : std::exp2(2 * bias)), space(1 / time) {}
+
+    float time, space;
 };
 
 struct SamplingChoice {

@@ -191,15 +191,15 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     if (region.rendered >= budget.moment_begun) {
         had = std::max(had, region.level + (region.supersampled ? 1 : 0));
     }
-    float const time_weight = std::exp2(2 * budget.bias), space_weight = 1 / time_weight;
-    float const hole_weight = std::max(time_weight, space_weight); // a hole is missing in space as in time
+    BiasWeights const weights(budget.bias);
+    float const hole = std::max(weights.time, weights.space) * hole_error; // it is missing in space as in time
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
     for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float pixels) {
         // New samples show although they are worse, or only where they are better, whatever the old ones show.
         bool const gives_way = cell.is_shown() && mirror.gives_way(cell);
-        float const least = gives_way ? -most_error : 0.0f;
+        float const least = gives_way ? -weights.space * most_error : 0.0f;
         float const too_coarse = gives_way || !cell.is_shown() ? INFINITY : worn_of_step(cell.worn).second;
         float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
         float const detail = counted_detail(cell.is_shown() ? cell.detail : hidden_detail, mean_detail_);
@@ -220,19 +220,18 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
                 stale = 0;
             }
         }
-        // What lies between the samples as they were rendered is missing in space, the rest has passed with time.
-        float const missing = spacing_error(detail, std::min(worn, cell.spacing));
-        float const now =
-            covered > 0 ? time_weight * (spacing_error(detail, worn) + stale) + (space_weight - time_weight) * missing
-                        : 0;
+        float const shown = covered > 0 ? spacing_error(detail, worn) + stale : 0;
         float const bare = pixels - covered;
         stale_sum += covered * stale;
-        wrong_sum += covered * now + bare * hole_error;
+        wrong_sum += covered * shown + bare * hole_error;
+        // What lies between the samples as they were rendered is missing in space, the rest has passed with time.
+        float const missing = spacing_error(detail, std::min(worn, cell.spacing));
+        float const now = weights.time * shown + (weights.space - weights.time) * missing;
         FloatLanes const shares = load_lanes((stands ? standing_shares : moved_shares).data());
-        FloatLanes const then = space_weight * smaller(detail * shares, FloatLanes{} + most_error);
+        FloatLanes const then = weights.space * smaller(detail * shares, FloatLanes{} + most_error);
         FloatLanes const gain = larger(now - then, FloatLanes{} + least);
         gains += covered * (load_lanes(shown_spacings.data()) < too_coarse ? gain : FloatLanes{}) +
-                 bare * larger(hole_weight * hole_error - then, FloatLanes{});
+                 bare * larger(hole - then, FloatLanes{});
     });
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;
