@@ -10,6 +10,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -24,8 +25,8 @@ inline constexpr int pixel_level = coarsest_levels;
 
 /// Samples per pixel of a level: 1/64 .. 16.
 constexpr float samples_per_pixel(int level) {
-    return level >= pixel_level ? static_cast<float>(1 << (2 * (level - pixel_level)))
-                                : 1.0f / static_cast<float>(1 << (2 * (pixel_level - level)));
+    constexpr std::array<float, sampling_levels> of_level{1.0f / 64, 1.0f / 16, 1.0f / 4, 1, 4, 16};
+    return of_level[static_cast<std::size_t>(level)];
 }
 
 struct RegionModel {
