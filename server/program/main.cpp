@@ -186,10 +186,6 @@ void serve(Options& options) {
         tbb::global_control::max_allowed_parallelism,
         options.threads > 0 ? static_cast<std::size_t>(options.threads)
                             : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    std::optional<CycleRecorder> recorder;
-    if (!options.record.empty()) {
-        recorder.emplace(options.record, options.record_rate);
-    }
     bool const had_terminal = has_terminal();
     std::vector<std::filesystem::path> scene_files;
     for (std::filesystem::path const& file : options.scenes) {
@@ -205,7 +201,6 @@ void serve(Options& options) {
     std::unique_ptr<LoadedScene> loaded = load_scene(options, report(options));
     std::vector<std::filesystem::path> const files = loaded->scene.files;
 
-    options.server.loop.recorder = recorder ? &*recorder : nullptr;
     if (event_log) {
         StreamOptions const& stream = options.server.loop.stream;
         event_log->begin({{scene_files.begin(), scene_files.end()},

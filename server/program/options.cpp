@@ -171,14 +171,6 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--list-as", options.list_as)->group("")->configurable(false);
     // The viewer's PrivateServer and the check of imports start the server with this.
     app.add_option("--news", options.news)->check(number_in(1, 1023))->group("")->configurable(false);
-    app.add_option(
-           "--record", options.record,
-           "Write what is planned for each viewer into this folder: a line of JSON for each batch, and for viewers "
-           "that move nothing pictures of tiles, density, error and motion")
-        ->type_name("FOLDER");
-    app.add_option("--record-rate", options.record_rate, "Sets of such pictures a second, for each viewer")
-        ->check(number_in(0.01, 1000.0))
-        ->capture_default_str();
     app.add_option("--record-events", options.record_events,
                    "Write to this file what comes from each viewer, and when, and what was answered: framelet-bench "
                    "replay makes the same of it")

@@ -27,8 +27,6 @@ struct Options {
     bool watch = false; ///< load the scene again when its files change
     bool info = false; ///< print what is in the scene, and serve nothing
     bool json = false; ///< that as JSON
-    std::filesystem::path record; ///< folder for what the server thought; empty: nothing is recorded
-    double record_rate = 4; ///< sets of pictures a second and session
     std::filesystem::path record_events; ///< file for what came to the streams; empty: none
     std::filesystem::path token_file, control_token_file; ///< empty: none
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none

@@ -9,6 +9,30 @@
 #include "server/render/visibility.h"
 
 namespace framelet {
+namespace {
+
+/// Replaces `shapes` by those of the framelets for which `send` is not 0, with each sample by itself: on no layer.
+void list_samples(std::span<Framelet const> rendered, std::span<std::uint8_t const> send,
+                  std::vector<FrameletShape>& shapes) {
+    std::size_t count = 0;
+    for (std::size_t i = 0; i < rendered.size(); ++i) {
+        if (send[i] == 0) {
+            continue;
+        }
+        shapes.resize(std::max(shapes.size(), ++count));
+        FrameletShape& shape = shapes[count - 1];
+        shape.layer_of.fill(FrameletShape::outlier);
+        shape.outliers.resize(framelet_samples);
+        for (std::size_t k = 0; k < framelet_samples; ++k) {
+            shape.outliers[k] = {rendered[i].depth[k] > 0 ? 1 / rendered[i].depth[k] : 0,
+                                 rendered[i].body.empty() ? static_body : rendered[i].body[k],
+                                 rendered[i].drift.empty() ? Drift{} : rendered[i].drift[k]};
+        }
+    }
+    shapes.resize(count);
+}
+
+} // namespace
 
 void BatchWork::render(PosedScene const& scene) {
     std::size_t const count = order.plan.tiles.size();
@@ -23,7 +47,7 @@ void BatchWork::render(PosedScene const& scene) {
     std::atomic<std::uint64_t> segments = 0;
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
         segments.fetch_add(render_display(scene.render_scene(), rays, plane, order.plan.tiles[i], order.state.exposure,
-                                          order.plan.rays_per_sample, order.plan.is_mirrored, fresh_.local(),
+                                          order.plan.rays_per_sample, order.plan.will_be_moved, fresh_.local(),
                                           rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
@@ -49,15 +73,16 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (!order.skips) {
         std::ranges::fill(needed_, std::uint8_t{1});
     }
-    choose_qps(ImagePlane(order.state.view.viewport), order.plan.tiles, needed_, order.qp, order.still, viewer.lossy,
-               batch_.qp);
+    HeldTiles& held = viewer.refresh.held_tiles();
+    if (order.state.view.viewport != held.plane().viewport()) { // the picture has another size by now
+        std::ranges::fill(needed_, std::uint8_t{0});
+    }
+    choose_qps(order.plan.tiles, needed_, order.qp, order.still, held, batch_.qp);
     fill_batch(viewer);
     if (batch_.framelets.empty()) {
         return false;
     }
-    if (order.takes_shapes) {
-        describe_shapes(scene, viewer);
-    }
+    describe_shapes(scene, viewer);
     std::uint64_t const samples = batch_.framelets.size() * framelet_samples;
     figures.exact_samples = batch_.qp.empty() ? samples : 0;
     figures.lossy_samples = samples - figures.exact_samples;
@@ -65,17 +90,29 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     return true;
 }
 
+/// Makes what a viewer that moves its samples is told of them. Of one that does not the server has to know it too.
 void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer) {
     Viewport const viewport = order.state.view.viewport;
-    viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
-                      order.plan.moment_begun, batch_.shapes);
+    if (order.takes_shapes) {
+        viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
+                          order.plan.moment_begun, batch_.shapes);
+    }
     viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
                         order.present.scene_time, order.state.scene_time, batch_.tracks, batch_.camera_track);
     for (BodyTrack const& track : batch_.tracks) {
         viewer.motions.extend(track);
     }
     if (!order.again) { // by the tracks that the viewer has with it
-        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_, batch_.shapes);
+        bool const moves_samples = order.plan.moment.moves_samples;
+        if (!moves_samples) {
+            list_samples(rendered_, needed_, loose_shapes_);
+        }
+        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_,
+                                 moves_samples ? batch_.shapes : loose_shapes_);
+    }
+    if (!order.takes_shapes) {
+        batch_.tracks.clear();
+        batch_.camera_track.reset();
     }
 }
 

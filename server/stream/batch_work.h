@@ -9,7 +9,7 @@
 #include "protocol/codec/batch_codec.h"
 #include "server/render/probe_renderer.h"
 #include "server/sampling/plan/adaptive_refresh.h"
-#include "server/stream/flow/lossy_tiles.h"
+#include "server/stream/flow/qp_choice.h"
 #include "server/stream/layers/shape_feed.h"
 #include "server/stream/posed_scene.h"
 #include "server/stream/viewer_stream.h"
@@ -21,7 +21,6 @@ struct ViewerKnowledge {
     AdaptiveRefresh refresh;
     ShapeFeed shapes;
     BodyMotions motions; ///< as the viewer knows them
-    LossyTiles lossy;
     std::uint64_t batches = 0; ///< how many have been learnt, and are sent
 };
 
@@ -70,6 +69,7 @@ private:
     std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
     std::vector<std::uint8_t> needed_; ///< by framelet: whether the viewer gets it
     Batch batch_;
+    std::vector<FrameletShape> loose_shapes_; ///< scratch: of samples that the viewer does not move
 };
 
 } // namespace framelet

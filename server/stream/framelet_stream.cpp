@@ -8,6 +8,7 @@
 
 #include "common/clock_state.h"
 #include "common/error.h"
+#include "common/framelet/reprojection.h"
 
 namespace framelet {
 namespace {
@@ -108,7 +109,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
         if (planned_ != nullptr) {
             return Step::finish;
         }
-        complete_ = viewer_.lossy.empty();
+        complete_ = !viewer_.refresh.held_tiles().any_lossy();
         if (complete_) {
             viewer_.refresh.settle();
             return Step::nothing;
@@ -181,6 +182,12 @@ double FrameletStream::camera_lead(Camera const& now, Camera const& then, Turn c
 HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const {
     Camera const now = camera_in(0, turn, scene);
     Camera const then = camera_in(least_moment_seconds, turn, scene);
+    if (!moves_samples_) { // what comes shows at once, as it is, until something else comes
+        double const seconds = 0.5 * moments_.standing_seconds();
+        bool const jumps = switches_ahead(turn, scene, seconds).any;
+        double const ahead = options_.looks_ahead && !jumps ? seconds : 0;
+        return {state_at(time_in(ahead, turn), scene), turn.now, seconds, 0, false};
+    }
     bool const camera_moves = then != now;
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
@@ -201,7 +208,7 @@ double FrameletStream::samples_per_second(Turn const& turn) const {
 }
 
 std::optional<HeldMoment> FrameletStream::moment_at(Turn const& turn, ViewState const& present, PosedScene& scene) {
-    if (moments_.observe(present, turn.now, takes_shapes())) {
+    if (moments_.observe(present, turn.now)) {
         moments_.begin(new_moment(turn, scene));
         if (moments_.held()->outdates) {
             viewer_.motions.jump_at(moments_.held()->shown_from);
@@ -214,6 +221,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     LinkState const link = link_.state();
     double const rendered = turn.samples_per_second;
     rendered_per_second_ = std::max(rendered, 1.0);
+    moves_samples_ = takes_shapes() && is_reprojectable(present.view.camera);
     RefreshInput wanted;
     wanted.state = present;
     wanted.moment = moment_at(turn, present, scene);
@@ -225,11 +233,11 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     if (options_.follows_link) { // half a cycle is a batch
         wanted.cycle_seconds = std::max(wanted.cycle_seconds, static_cast<float>(2 * worthwhile_seconds(link)));
     }
-    wanted.delivery_seconds = static_cast<float>(link.delivery_seconds);
     wanted.bias = std::clamp(static_cast<float>(options_.bias) + settings_.bias, -1.0f, 1.0f);
     wanted.batch_framelets = options_.batch_framelets;
     wanted.link_framelets = options_.follows_link ? bounded_batch(link) : max_batch_framelets;
-    wanted.motions = takes_shapes() ? &viewer_.motions : nullptr;
+    wanted.motions = &viewer_.motions;
+    wanted.moves_samples = takes_shapes();
     wanted.limits = options_.limits;
     BatchWork& work = free_work();
     BatchOrder& order = work.order;
@@ -256,7 +264,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     }
     set_planned(work);
     work.figures.is_new_cycle = order.plan.is_new_cycle;
-    work.figures.regions = viewer_.refresh.field().visible().size();
+    work.figures.regions = viewer_.refresh.regions().visible().size();
     return Step::render;
 }
 
@@ -267,7 +275,8 @@ void FrameletStream::plan_exactly(ViewState const& present, double now, PosedSce
     BatchWork& work = free_work();
     work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, true, true};
     work.order.plan.moment_begun = now;
-    viewer_.lossy.list(std::min(bounded_batch(link_.state()), most_framelets), work.order.plan.tiles);
+    viewer_.refresh.held_tiles().list_lossy(std::min(bounded_batch(link_.state()), most_framelets),
+                                            work.order.plan.tiles);
     set_planned(work);
 }
 
@@ -307,7 +316,7 @@ bool FrameletStream::learn(PosedScene const& scene) {
     TurnFigures const& figures = learnt_->figures;
     sent_share_.add(static_cast<double>(figures.rays) + probe_cost * static_cast<double>(figures.probes), samples,
                     rendered_per_second_);
-    complete_ = viewer_.lossy.empty() && viewer_.refresh.is_complete(learnt_->order.present);
+    complete_ = !viewer_.refresh.held_tiles().any_lossy() && viewer_.refresh.is_complete(learnt_->order.present);
     return sends;
 }
 

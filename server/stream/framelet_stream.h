@@ -82,6 +82,7 @@ private:
     LinkEstimate link_;
     QpChoice choice_;
     SentShare sent_share_;
+    bool moves_samples_ = true; ///< the viewer does, of and to the camera that it looks through
     double rendered_per_second_ = 1; ///< rays a second, when a batch was planned last
     CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;

@@ -45,7 +45,7 @@ bool MomentChoice::is_near(ViewState const& one, ViewState const& other) {
     return std::abs(one.scene_time - other.scene_time) < near && one.view.viewport == other.view.viewport;
 }
 
-bool MomentChoice::observe(ViewState const& present, double now, bool viewer_moves_samples) {
+bool MomentChoice::observe(ViewState const& present, double now) {
     if (!last_ || !same_picture(*last_, present)) {
         changed_ = now;
         is_stop_ = is_stop_ && last_ && is_near(*last_, present);
@@ -53,7 +53,7 @@ bool MomentChoice::observe(ViewState const& present, double now, bool viewer_mov
     last_ = present;
     bool const is_complete = held_ && completed_ && held_->begun >= changed_;
     double const still = is_stop_ && !is_complete ? stop_seconds : rest_seconds;
-    if (!viewer_moves_samples || now - changed_ > still) {
+    if (now - changed_ > still) {
         held_.reset();
         is_stop_ = false;
         return false;

@@ -30,9 +30,9 @@ inline constexpr double stop_seconds = 0.25;
 class MomentChoice {
 public:
     /// Takes in what is to be seen at present. True when another moment is to `begin` now: the last one has lasted long
-    /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest, nor
-    /// for a viewer that moves nothing. `now`: seconds, steady.
-    bool observe(ViewState const& present, double now, bool viewer_moves_samples);
+    /// enough, the picture has another size, projection or exposure, or something begins to move. Never at rest.
+    /// `now`: seconds, steady.
+    bool observe(ViewState const& present, double now);
     void begin(HeldMoment const& moment);
     /// Notes that nothing of the moment that is held is worth rendering any more.
     void note_complete(double now);

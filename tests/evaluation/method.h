@@ -34,9 +34,7 @@ struct StageSeconds {
 /// Parts of `framelet` that can be left out; true: the part is there.
 struct FrameletParts {
     bool spacing = true; ///< spacing adapts to the picture; else one sample a pixel, finer only when nothing is due
-    bool price = true; ///< a sample's price follows the budget; else it is always cheap and urgency alone decides
     bool probes = true;
-    bool periodic_refresh = true;
     bool link_budget = true; ///< rate and batches are bounded by what the link carries
     bool loss = true; ///< framelets are coded with loss where the link asks for it
     bool skip = true; ///< what the viewer has already is not sent
@@ -50,8 +48,6 @@ struct FrameletParts {
     /// A moment in which the scene will jump is rendered as after the jump, and shown from then on.
     bool awaited_switches = true;
     bool camera_lead = true; ///< a moment's camera is ahead of the moment's time
-    /// What is rendered follows from what the viewer shows (mirror), and not from the field.
-    bool mirror = true;
     /// Unshaded rays check the visibility that the mirror cannot know.
     bool visibility = true;
     bool planned_together = true; ///< the samples of several cycles are planned together

@@ -5,6 +5,8 @@
 #include "server/render/display_framelet.h"
 #include "server/render/probe_renderer.h"
 #include "server/sampling/plan/adaptive_refresh.h"
+#include "server/stream/layers/layer_fit.h"
+#include "server/stream/moment_choice.h"
 #include "tests/evaluation/stopwatch.h"
 
 namespace framelet::bench {
@@ -15,16 +17,24 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
     ProbeRenderer probes;
     std::vector<DisplayFramelet> displayed;
     std::vector<Framelet> rendered;
+    std::vector<FrameletShape> shapes;
+    std::vector<std::uint8_t> sent;
+    BodyMotions const motions;
     RefreshInput input;
     RefreshPlan plan;
     input.samples_per_second = samples_per_second;
+    input.motions = &motions;
     double plan_seconds = 0;
+    std::uint64_t batch = 0;
     ResponseCost cost;
     // The first tenth of the time is not counted: a picture that first appears costs differently.
     for (double const start = 0.1 * seconds; input.now < seconds;) {
-        pose_at(scene, input.now);
         input.state = {{1, scene.camera, viewport}, scene.exposure, input.now};
         input.cycle_seconds = cycle_length(false, plan_seconds);
+        if (!input.moment || input.now > input.moment->begun + least_moment_seconds) {
+            input.moment = HeldMoment{input.state, input.now};
+        }
+        pose_at(scene, input.moment->state.scene_time);
         double const planned = processor_seconds_of([&] { refresh.plan(input, plan); });
         if (plan.is_new_cycle) {
             plan_seconds = planned;
@@ -36,7 +46,14 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
         for (std::size_t i = 0; i < rendered.size(); ++i) {
             displayed[i] = to_display(rendered[i], scene.exposure);
         }
-        double const learnt = processor_seconds_of([&] { refresh.learn(plan, displayed, rendered, probes.luma()); });
+        shapes.resize(rendered.size());
+        for (std::size_t i = 0; i < rendered.size(); ++i) { // has a cost of its own in the table
+            fit_layers(rendered[i], ImagePlane(viewport), {1e-3f}, shapes[i]);
+        }
+        double const learnt = processor_seconds_of([&] {
+            sent = refresh.learn(plan, displayed, rendered, probes.luma());
+            refresh.note_sent(plan, ++batch, displayed, rendered, sent, shapes);
+        });
         if (input.now >= start) {
             cost.plan += planned;
             cost.learn += learnt;
@@ -46,7 +63,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
         double const samples = static_cast<double>(rendered.size() * framelet_samples + plan.probes.size());
         input.now += std::max(samples, 1.0) / samples_per_second;
     }
-    cost.regions = refresh.field().visible().size();
+    cost.regions = refresh.regions().visible().size();
     pose_at(scene, 0);
     return cost;
 }

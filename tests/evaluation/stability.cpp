@@ -19,8 +19,6 @@ namespace {
 
 using nlohmann::json;
 
-/// Share of an interval in which hunting is looked for: its end, when the error should have settled.
-constexpr double hunting_share = 0.5;
 /// Factor of its final level within which an error counts as settled.
 constexpr double settled_factor = 2;
 
@@ -35,15 +33,10 @@ json event_figures(std::vector<double> const& times, std::vector<double> const& 
         return std::span(all).subspan(static_cast<std::size_t>(first), static_cast<std::size_t>(last - first));
     };
     Settling const settling = measure_settling(part(times), part(errors), event, settled_factor);
-    Hunting const hunting = measure_hunting(cycles, until - hunting_share * (until - event), until);
     json figures{{"seconds", event},
                  {"final_mse", settling.final_level},
                  {"peak_mse", settling.peak},
-                 {"overshoot", settling.overshoot},
-                 {"hunting",
-                  {{"cycles", hunting.cycles},
-                   {"changed_share", hunting.changed_share},
-                   {"price_octaves", hunting.price_octaves}}}};
+                 {"overshoot", settling.overshoot}};
     if (settling.first) {
         figures["first_seconds"] = *settling.first;
     }
@@ -87,7 +80,7 @@ json run_batch(Subject const& subject, std::vector<double> const& events, CostTa
 } // namespace
 
 json measure_stability(StudyOptions const& study, std::vector<std::size_t> const& batches) {
-    std::printf("settled: error within %gx of its final level; hunting: the last half before the next event\n"
+    std::printf("settled: error within %gx of its final level\n"
                 "samples: rendered, over what there was time for; worst: of a tenth of a second\n",
                 settled_factor);
     FigureTable const table({{"scene", "/scene", -9},
@@ -99,9 +92,6 @@ json measure_stability(StudyOptions const& study, std::vector<std::size_t> const
                              {"settled ms", "/event/settled_seconds", 10, 0, 1e3},
                              {"cycles", "/event/settled_cycles", 7, 0},
                              {"over", "/event/overshoot", 6, 1},
-                             {"later", "/event/hunting/cycles", 7, 0},
-                             {"tiling %", "/event/hunting/changed_share", 9, 1, 100},
-                             {"price oct", "/event/hunting/price_octaves", 9, 3},
                              {"samples", "/conservation/share", 7, 3},
                              {"worst", "/conservation/largest_share", 7, 3}});
     json result{{"viewport", {study.run.viewport.width, study.run.viewport.height}},

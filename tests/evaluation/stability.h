@@ -1,6 +1,6 @@
-// The verb `stability`: does the loop of error, density and tiling come to rest? Scenes with events (everything stops,
+// The verb `stability`: does the error come to rest, and is the budget kept? Scenes with events (everything stops,
 // a lamp switches, the camera cuts), at several batch sizes, on the virtual clock. Out: for every event how soon the
-// error has settled, and how steady tiling, price and budget are.
+// error has settled, and the samples rendered beside those that there was time for.
 #pragma once
 
 #include <vector>

@@ -47,22 +47,14 @@ TEST(Settling, NoErrorIsAsGoodAsHardlyAny) {
     EXPECT_EQ(result.settled.value(), 0);
 }
 
-TEST(CycleLog, HuntingAndConservationAreMeansOverTheirTime) {
-    std::vector<CycleEntry> const entries{
-        {0, 100, 90, 1, 10, 10}, {1, 100, 150, 4, 10, 5}, {2, 100, 100, 2, 10, 0}, {3, 100, 80, 2, 10, 0}};
-    Hunting const hunting = measure_hunting(entries, 1, 3);
-    EXPECT_EQ(hunting.cycles, 2u);
-    EXPECT_DOUBLE_EQ(hunting.changed_share, 0.25);
-    EXPECT_DOUBLE_EQ(hunting.price_octaves, 1.5);
-    EXPECT_EQ(measure_hunting(entries, 3, 4).changed_share, 0);
-    EXPECT_EQ(measure_hunting(entries, 5, 9).cycles, 0u);
+TEST(CycleLog, ConservationIsAMeanOverItsTime) {
+    std::vector<CycleEntry> const entries{{0, 100, 90}, {1, 100, 150}, {2, 100, 100}, {3, 100, 80}};
     Conservation const conservation = measure_conservation(entries, 0, 4);
     EXPECT_DOUBLE_EQ(conservation.samples, 340) << "the last one has not ended";
     EXPECT_DOUBLE_EQ(conservation.budget, 300);
     EXPECT_DOUBLE_EQ(conservation.largest_share, 1.5);
     // Short cycles compensate each other within a tenth of a second.
-    std::vector<CycleEntry> const hasty{
-        {0, 1000, 30, 1, 1, 0}, {0.04, 1000, 90, 1, 1, 0}, {0.08, 1000, 10, 1, 1, 0}, {0.2, 1000, 0, 1, 1, 0}};
+    std::vector<CycleEntry> const hasty{{0, 1000, 30}, {0.04, 1000, 90}, {0.08, 1000, 10}, {0.2, 1000, 0}};
     EXPECT_DOUBLE_EQ(measure_conservation(hasty, 0, 1).largest_share, 130.0 / 200);
 }
 

@@ -204,7 +204,7 @@ std::span<Verb const> verbs() {
          .quick = {.seconds = 5, .rate = 10},
          .add_options = add_table_options},
         {.name = "stability",
-         .question = "How the loop of error, density and tiling settles after events, and how steady it is then",
+         .question = "How soon the error settles after events, and whether the budget of samples is kept",
          .answer =
              [](VerbOptions& o) {
                  return measure_stability(o.study, {8, 32, 128, 1024});

@@ -49,9 +49,9 @@ TEST_F(Warp, FramesAreMovedToWhereTheCameraIs) {
 /// Joints, morph targets, shadows of what turns: what `compare` shows of them in large, in small. The goals that are
 /// met.
 TEST_F(Warp, WhatBendsOrTurnsErrsLessThanUnmovedAndThanMovedFrames) {
-    RunParameters parameters = small_run({160, 160}, 12);
+    RunParameters parameters = small_run({240, 240}, 12);
     parameters.seconds = 1;
-    parameters.frames_per_second = 5;
+    parameters.frames_per_second = 2;
     struct Goal {
         char const* scene;
         double of_unmoved, of_moved_frames; ///< greatest share of their error

@@ -14,7 +14,6 @@
 #include "protocol/codec/zstd_frames.h"
 #include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
-#include "server/session/loop/cycle_recorder.h"
 #include "server/session/scene_reloader.h"
 #include "tests/faults/failing_allocations.h"
 #include "tests/loopback/process.h"
@@ -117,26 +116,6 @@ TEST(PartAllocation, PngFiles) {
                   EXPECT_EQ(read, picture);
               }),
               2);
-}
-
-TEST(PartAllocation, ARecordingEndsAndTheServerGoesOn) {
-    TemporaryFolder const folder;
-    AdaptiveRefresh refresh;
-    RefreshInput input;
-    input.state.view.viewport = {320, 200};
-    input.samples_per_second = 1e6;
-    RefreshPlan plan;
-    refresh.plan(input, plan);
-    SparedFromFailure const spared; // the recorder's own thread is not
-    for (std::uint64_t number = 1; number < 40; ++number) {
-        FailingAllocation const fails(number);
-        CycleRecorder recorder(folder.path(), 1);
-        CycleRecord record;
-        record.cycle = number;
-        recorder.add(record, refresh, 1);
-        recorder.add(record, refresh, 2);
-    }
-    EXPECT_TRUE(std::filesystem::exists(folder.path() / "cycles.jsonl"));
 }
 
 TEST(PartAllocation, AReloadThatFailsIsNotTheLast) {

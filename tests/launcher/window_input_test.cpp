@@ -7,6 +7,7 @@
 
 #include "client/core/camera/camera_path.h"
 #include "tests/launcher/window_session.h"
+#include "tests/loopback/metrics_page.h"
 
 namespace framelet::test {
 namespace {
@@ -250,18 +251,14 @@ TEST_F(WideWindowTest, TheListSaysWhatIsDrawnOverThePicture) {
     }));
 }
 
-/// The scene moves, and the server writes down each batch.
+/// The scene moves, and the server says how many rays it renders.
 class MovingWindowTest : public WindowInputTest {
 protected:
-    MovingWindowTest() { server_options_ = {"--insecure", "--record", (folder_.path() / "record").string()}; }
+    MovingWindowTest() { server_options_ = {"--insecure", "--metrics", "0"}; }
 
-    std::uintmax_t recorded() const {
-        std::error_code error;
-        auto const size = fs::file_size(folder_.path() / "record" / "cycles.jsonl", error);
-        return error ? 0 : size;
-    }
-    bool has_grown_since(std::uintmax_t size) const {
-        return eventually([&] { return recorded() > size; });
+    double rays() { return metric(ask(metrics_address(*server_), "/metrics").body(), "framelet_rays_total"); }
+    bool has_grown_since(double rays_then) {
+        return eventually([&] { return rays() > rays_then; });
     }
 };
 
@@ -281,14 +278,14 @@ TEST_F(MovingWindowTest, AFilmIsThereOnceItIsSaidToBe) {
 TEST_F(MovingWindowTest, NothingIsRenderedForAWindowThatIsHidden) {
     newest_camera();
     EXPECT_TRUE(has_grown_since(0));
-    EXPECT_TRUE(has_grown_since(recorded()));
+    EXPECT_TRUE(has_grown_since(rays()));
     input({"search", "--name", "framelet-viewer", "windowunmap"});
-    std::uintmax_t hidden = 0;
+    double hidden = 0;
     EXPECT_TRUE(eventually([&] {
-        hidden = recorded();
+        hidden = rays();
         for (int i = 0; i < 5; ++i) {
             std::this_thread::sleep_for(200ms);
-            if (recorded() != hidden) {
+            if (rays() != hidden) {
                 return false;
             }
         }

@@ -454,7 +454,6 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_SERVER, {scene_file, "--exposure", "nan"}, 2, "--exposure"},
         {FRAMELET_SERVER, {scene_file, "--exposure", "inf"}, 2, "--exposure"},
         {FRAMELET_SERVER, {scene_file, "--bias", "nan"}, 2, "--bias"},
-        {FRAMELET_SERVER, {scene_file, "--record-rate", "nan"}, 2, "--record-rate"},
         {FRAMELET_SERVER, {scene_file, "--scene-memory", "1"}, 1, "--scene-memory"},
         {FRAMELET_SERVER, {scene_file, "--scene-memory", "0"}, 2, "--scene-memory"},
         {FRAMELET_CLIENT, {"127.0.0.1:7070", "--exposure", "nan"}, 2, "--exposure"},

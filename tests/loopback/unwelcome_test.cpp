@@ -264,12 +264,13 @@ TEST(Unwelcome, ClosedDescriptorsBecomeNoConnections) {
 
 TEST(Unwelcome, AHangUpWhileTheSceneLoadsEndsNothing) {
     TemporaryFolder folder;
-    std::filesystem::path const record = folder.path() / "record";
-    Process server(FRAMELET_SERVER, {scene_file, "--port", "0", "--paused", "--record", record.string()});
+    std::filesystem::path const record = folder.path() / "events";
+    Process server(FRAMELET_SERVER, {scene_file, "--port", "0", "--paused", "--record-events", record.string()});
     ASSERT_TRUE(eventually([&] { return std::filesystem::exists(record); })); // before it begins to load
     server.signal(SIGHUP);
-    EXPECT_TRUE(eventually(
-        [&] { return server.errors().find("loading the scene again") != std::string::npos || !server.running(); }));
+    EXPECT_TRUE(eventually([&] {
+        return server.errors().find("the scene is not loaded again") != std::string::npos || !server.running();
+    }));
     EXPECT_TRUE(server.running());
     EXPECT_NE(server.output().find("listening on"), std::string::npos);
 }
@@ -312,7 +313,6 @@ TEST(Unwelcome, WrongArgumentsAreFoundBeforeTheSceneIsLoaded) {
         {{"--bind", "no.such.host.invalid", "--insecure"}, "no.such.host.invalid"},
         {{"--port", "0", "--tls-cert", text, "--tls-key", text}, "TLS certificate"},
         {{"--port", "0", "--environment", text}, "notes.txt"},
-        {{"--port", "0", "--record", text}, "notes.txt"},
         {{"--port", "0", "--record-events", text + "/events"}, "notes.txt/events"},
     };
     for (Wrong const& wrong : cases) {

@@ -18,9 +18,9 @@ namespace {
 using namespace test;
 
 bool is_all_finest(AdaptiveRefresh const& refresh) {
-    RegionField const& field = refresh.field();
-    return std::all_of(field.visible().begin(), field.visible().end(),
-                       [&](std::uint32_t index) { return field[index].level == sampling_levels - 1; });
+    RegionGrid const& regions = refresh.regions();
+    return std::ranges::all_of(regions.visible(),
+                               [&](std::uint32_t index) { return regions[index].level == finest_level; });
 }
 
 /// Seconds in which the whole picture can be rendered at the finest level.
@@ -48,11 +48,12 @@ TEST(AdaptiveRefresh, AStillSceneCompletes) {
 }
 
 /// The regions under patches, each as often as it is under one.
-std::multiset<std::uint32_t> regions_of(RegionField const& field, std::vector<Patch> const& patches) {
+std::multiset<std::uint32_t> regions_of(RegionGrid const& grid, std::vector<Patch> const& patches) {
     std::multiset<std::uint32_t> regions;
     for (Patch const& patch : patches) {
-        RegionField::Range const range = field.range_of(patch.node);
-        for (std::uint32_t i = range.first; i < range.last; ++i) {
+        std::uint32_t const first = grid.first_under(patch.node);
+        std::uint32_t const count = 1u << (2 * (grid.depth() - patch.node.depth()));
+        for (std::uint32_t i = first; i < first + count; ++i) {
             regions.insert(i);
         }
     }
@@ -69,15 +70,15 @@ TEST(AdaptiveRefresh, WhatIsInFlightIsNotTakenAgain) {
         std::size_t plans = 0;
         for (bool goes_on = true; goes_on; ++plans) {
             goes_on = synthetic.step();
-            auto const taken = regions_of(synthetic.refresh.field(), synthetic.patches);
+            auto const taken = regions_of(synthetic.refresh.regions(), synthetic.patches);
             for (std::uint32_t const index : taken) {
                 ASSERT_EQ(in_flight.count(index), 0u) << "region " << index << ", plan " << plans;
             }
             in_flight = taken;
         }
         EXPECT_GT(plans, 10u);
-        for (std::uint32_t const index : synthetic.refresh.field().visible()) {
-            EXPECT_LT(synthetic.refresh.field()[index].taken.level, 0) << "nothing is in flight for ever";
+        for (std::uint32_t const index : synthetic.refresh.regions().visible()) {
+            EXPECT_LT(synthetic.refresh.regions()[index].taken.level, 0) << "nothing is in flight for ever";
         }
     }
 }
@@ -119,7 +120,6 @@ TEST(AdaptiveRefresh, AMomentIsHardlyEverRenderedTwice) {
         SyntheticRefresh synthetic(small, moving_texture);
         synthetic.pipelined = pipelined;
         synthetic.moment_length = 0.1;
-        synthetic.input.limits.periodic_share = 0;
         std::map<Tile, double> rendered; // and of which moment last
         std::size_t tiles = 0, repeated = 0;
         synthetic.run(5, [&] {
@@ -150,14 +150,13 @@ double busy_share(SyntheticRefresh& synthetic, double seconds) {
 }
 
 TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
-    BodyMotions const motions;
     for (bool const pipelined : {true, false}) {
         SyntheticRefresh synthetic(small, texture);
         synthetic.pipelined = pipelined;
         synthetic.moment_length = 0.1;
         synthetic.camera_speed = 1e-4f;
         synthetic.input.samples_per_second *= 8; // the moments that a viewer holds have all of it
-        synthetic.input.motions = &motions;
+        synthetic.input.moves_samples = true;
         EXPECT_GT(busy_share(synthetic, 1), 0.05) << "a sample a pixel, of four rays where that shows";
         EXPECT_LT(busy_share(synthetic, 3), 0.02) << "its clock runs, and nothing changes";
         synthetic.stop();
@@ -167,11 +166,10 @@ TEST(AdaptiveRefresh, OfAMovingCameraTheViewerKeepsWhatDoesNotChange) {
 }
 
 TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwiceWithAsManyRays) {
-    BodyMotions const motions;
     SyntheticRefresh synthetic(small, moving_texture);
     synthetic.moment_length = 0.1;
     synthetic.camera_speed = 1e-4f;
-    synthetic.input.motions = &motions;
+    synthetic.input.moves_samples = true;
     std::map<Tile, std::pair<double, int>> rendered; // of which moment last, with how many rays a sample
     std::size_t tiles = 0;
     synthetic.run(3, [&] {
@@ -187,18 +185,6 @@ TEST(AdaptiveRefresh, OfAMomentNoTileIsRenderedTwiceWithAsManyRays) {
     synthetic.stop();
     EXPECT_LT(synthetic.finish(30), 30);
     EXPECT_TRUE(is_all_finest(synthetic.refresh));
-}
-
-TEST(AdaptiveRefresh, PeriodicRefreshesAndRefinementsAreNotOfTheSameTiles) {
-    SyntheticRefresh synthetic(small, moving_texture);
-    synthetic.moment_length = 0.1;
-    synthetic.input.limits.periodic_share = 0.3;
-    synthetic.run(5, [&] {
-        std::set<Tile> batch;
-        for (Tile const tile : synthetic.tiles) {
-            EXPECT_TRUE(batch.insert(tile).second);
-        }
-    });
 }
 
 /// What stood while the clock ran is known to the viewer; it has to be seen once more when the clock stops, but that
@@ -244,39 +230,42 @@ TEST(AdaptiveRefresh, ACameraThatReturnsWithinACycleIsNotForgotten) {
 }
 
 TEST(AdaptiveRefresh, WhatIsUnchangedIsNotSentAgain) {
-    for (bool const running : {false, true}) {
+    for (bool const moves_samples : {false, true}) {
         for (std::size_t const batch : {8u, 1024u}) {
-            SyntheticRefresh synthetic(small, texture);
-            synthetic.running = running;
+            SyntheticRefresh synthetic(small, half_dust);
+            synthetic.running = false;
+            synthetic.input.moves_samples = moves_samples;
             synthetic.input.batch_framelets = batch;
-            std::map<Tile, int> times;
-            std::size_t late = 0;
-            double const end = 20;
-            synthetic.run(end, [&] {
-                for (DisplayFramelet const& framelet : synthetic.sent) {
-                    ++times[framelet.tile];
+            ASSERT_LT(synthetic.finish(60), 60);
+            for (int moment = 1; moment < 4; ++moment) { // the clock is set, and nothing has changed
+                synthetic.stopped_at = moment;
+                std::size_t sent = 0, rendered = 0;
+                while (synthetic.step()) {
+                    sent += synthetic.sent.size();
+                    rendered += synthetic.tiles.size();
                 }
-                late += synthetic.input.now > 0.75 * end ? synthetic.sent.size() : 0;
-            });
-            int most = 0;
-            for (auto const& [tile, count] : times) {
-                most = std::max(most, count);
+                EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+                EXPECT_GT(rendered, 0u) << "it might have";
+                EXPECT_EQ(sent, 0u);
             }
-            std::printf("unchanged, clock %s, batch %zu: a tile is sent at most %d times, %zu late\n",
-                        running ? "runs" : "stands", batch, most, late);
-            EXPECT_LE(most, running ? 2 : 1);
-            EXPECT_EQ(late, 0u);
         }
     }
 }
 
+/// Probes that are wrong by chance are few.
+TEST(AdaptiveRefresh, WhileAClockRunsHardlyAnythingIsSentOfWhatStands) {
+    SyntheticRefresh synthetic(small, texture);
+    synthetic.input.samples_per_second *= 8;
+    synthetic.run(2);
+    EXPECT_LT(busy_share(synthetic, 3), 0.02);
+}
+
 /// A viewer that moves its samples has moved away what it got before the camera went elsewhere.
 TEST(AdaptiveRefresh, AfterACameraHasReturnedAViewerThatMovesSamplesIsSentAllOfThem) {
-    BodyMotions const motions;
     for (bool const moves_samples : {true, false}) {
         SyntheticRefresh synthetic({64, 64}, texture);
         synthetic.running = false;
-        synthetic.input.motions = moves_samples ? &motions : nullptr;
+        synthetic.input.moves_samples = moves_samples;
         synthetic.input.batch_framelets = 8;
         auto& camera = synthetic.input.state.view.camera;
         ASSERT_LT(synthetic.finish(60), 60);
@@ -314,43 +303,15 @@ TEST(AdaptiveRefresh, FindsAHairInWhatWasFlat) {
             });
             synthetic.input.batch_framelets = batch;
             double found = 1e9;
-            double period = 0;
             synthetic.run(appears + 8, [&] {
-                Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
-                period = refresh_period(synthetic.refresh.field(), budget);
                 for (DisplayFramelet const& framelet : synthetic.sent) {
                     if (std::count(framelet.red.begin(), framelet.red.end(), 255) > 0) {
                         found = std::min(found, synthetic.input.now - appears);
                     }
                 }
             });
-            std::printf("hair, %s, batch %zu: after %.2f s of %.2f\n", was_flat ? "flat" : "texture", batch, found,
-                        period);
-            EXPECT_LT(found, period + 0.1);
-        }
-    }
-}
-
-TEST(AdaptiveRefresh, EveryRegionIsRefreshed) {
-    for (double const pictures_a_second : {1.0, 4.0, 30.0}) {
-        for (std::size_t const batch : {8u, 64u, 1024u}) {
-            SyntheticRefresh synthetic({256, 100}, moving_texture);
-            synthetic.input.samples_per_second = pictures_a_second * 256 * 100;
-            synthetic.input.batch_framelets = batch;
-            double oldest = 0;
-            Budget const budget{synthetic.input.samples_per_second, synthetic.input.cycle_seconds, 0, 0};
-            RegionField const whole{ImagePlane({256, 100})};
-            double const period = refresh_period(whole, budget);
-            synthetic.run(3 * period, [&] {
-                RegionField const& field = synthetic.refresh.field();
-                for (std::uint32_t const index : field.visible()) {
-                    double const refreshed = std::max(field[index].refreshed, 0.0);
-                    oldest = std::max(oldest, synthetic.input.now - refreshed);
-                }
-            });
-            std::printf("periodic refreshes, %.0f pictures/s, batch %zu: oldest %.2f s, period %.2f\n",
-                        pictures_a_second, batch, oldest, period);
-            EXPECT_LT(oldest, 2 * period);
+            std::printf("hair, %s, batch %zu: after %.2f s\n", was_flat ? "flat" : "texture", batch, found);
+            EXPECT_LT(found, 8);
         }
     }
 }
@@ -372,45 +333,6 @@ TEST(AdaptiveRefresh, ACycleCostsWhatItMay) {
     }
 }
 
-/// Steady motion: how much of the tiling changes from cycle to cycle, and how far the price does.
-TEST(AdaptiveRefresh, SettlesOnSteadyMotion) {
-    SyntheticRefresh synthetic(small, [](float x, float y, double time) {
-        return x < 100 ? moving_texture(x, y, time) : texture(x, y, 0); // both kinds
-    });
-    synthetic.input.samples_per_second = 8.0 * small.width * small.height;
-    synthetic.run(10);
-    std::vector<Patch> last;
-    double changed = 0;
-    int cycles = 0;
-    float least = 1e9f;
-    float most = 0;
-    TilingScratch scratch;
-    synthetic.run(4, [&] {
-        RegionField const& field = synthetic.refresh.field();
-        std::vector<float> density(field.size());
-        for (std::uint32_t const index : field.visible()) {
-            density[index] = samples_per_pixel(synthetic.refresh.choices()[index].level);
-        }
-        std::vector<Patch> cut;
-        make_density_patches(field.plane(), density, field.depth(), scratch, cut);
-        if (!last.empty()) {
-            auto const is_new = [&](Patch const& patch) {
-                return std::find(last.begin(), last.end(), patch) == last.end();
-            };
-            changed +=
-                static_cast<double>(std::count_if(cut.begin(), cut.end(), is_new)) / static_cast<double>(cut.size());
-            ++cycles;
-        }
-        last = cut;
-        least = std::min(least, synthetic.refresh.price());
-        most = std::max(most, synthetic.refresh.price());
-    });
-    std::printf("steady motion: %.4f of the patches change a cycle, price %.3g .. %.3g\n", changed / cycles, least,
-                most);
-    EXPECT_LT(changed / cycles, 0.1);
-    EXPECT_LT(most / least, 10);
-}
-
 TEST(AdaptiveRefresh, SettlesAfterAStep) {
     for (std::size_t const batch : {8u, 64u, 1024u}) {
         SyntheticRefresh synthetic(small, moving_texture);
@@ -430,10 +352,14 @@ TEST(AdaptiveRefresh, SettlesAfterAStep) {
 TEST(AdaptiveRefresh, DoesNotGrow) {
     SyntheticRefresh synthetic(small, moving_texture);
     synthetic.input.batch_framelets = 64;
-    synthetic.run(40); // until the largest batch has been seen
-    std::size_t const before = mallinfo2().uordblks;
-    synthetic.run(10);
-    EXPECT_LE(mallinfo2().uordblks, before + 16384);
+    auto const most_bytes = [&] { // what is held varies from moment to moment
+        std::size_t most = 0;
+        synthetic.run(20, [&] { most = std::max<std::size_t>(most, mallinfo2().uordblks); });
+        return most;
+    };
+    synthetic.run(100);
+    std::size_t const before = most_bytes();
+    EXPECT_LE(most_bytes(), before + 65536);
 }
 
 } // namespace

@@ -1,4 +1,4 @@
-#include "server/sampling/model/coding_cost.h"
+#include "server/sampling/held/coding_cost.h"
 
 #include <cmath>
 #include <random>
@@ -9,37 +9,32 @@ namespace framelet {
 namespace {
 
 TEST(CodingCost, IsHalfABitWhereNothingIsToBeSeen) {
-    RegionModel flat;
-    for (float const bits : coded_bits(flat)) {
+    for (float const bits : coded_bits(0)) {
         EXPECT_FLOAT_EQ(bits, 0.5f);
     }
 }
 
 TEST(CodingCost, IsTheRateOfGaussianCoefficients) {
-    RegionModel region;
-    region.energy[pixel_level] = 3e-4f; // four times the noise with it: one bit for three of four coefficients
-    LevelCosts const bits = coded_bits(region);
-    auto const pixel = static_cast<std::size_t>(pixel_level);
-    EXPECT_FLOAT_EQ(bits[pixel - 1], 0.5f);
-    EXPECT_FLOAT_EQ(bits[pixel], 0.5f + 0.75f);
-    EXPECT_FLOAT_EQ(bits[pixel + 1], 0.5f + 0.75f / 4) << "of finer samples it is the second octave";
+    // Three times the noise a pixel apart, four times with it: one bit for three of four coefficients, then half of
+    // log2 of 7, 13 and 25 for the coarser octaves.
+    LevelCosts const bits = coded_bits(3e-4f);
+    float const coarser =
+        0.5f * (0.1875f * std::log2(7.0f) + 0.046875f * std::log2(13.0f) + 0.01171875f * std::log2(25.0f));
+    EXPECT_NEAR(bits[static_cast<std::size_t>(pixel_level)], 0.5f + 0.75f + coarser, 1e-5f);
 }
 
 TEST(CodingCost, IsFiniteAndGrowsWithDetail) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> exponent(-40, 3);
     for (int i = 0; i < 200'000; ++i) {
-        RegionModel region;
-        for (float& energy : region.energy) {
-            energy = random() % 8 == 0 ? 0 : std::exp2(exponent(random));
-        }
-        LevelCosts const before = coded_bits(region);
-        region.energy[random() % region.energy.size()] *= 2;
-        LevelCosts const after = coded_bits(region);
+        float const detail = random() % 8 == 0 ? 0 : std::exp2(exponent(random));
+        LevelCosts const before = coded_bits(detail);
+        LevelCosts const after = coded_bits(2 * detail);
         for (std::size_t level = 0; level < before.size(); ++level) {
             ASSERT_TRUE(std::isfinite(after[level]));
             ASSERT_GE(before[level], 0.5f);
             ASSERT_GE(after[level], before[level]);
+            ASSERT_LE(level > 0 ? before[level] : 0, before[level > 0 ? level - 1 : 0]) << "finer samples differ less";
         }
     }
 }

@@ -27,13 +27,13 @@ Seen half_busy(float x, float y) {
 
 struct Planner {
     Mirror mirror{viewport};
-    RegionField field{plane};
+    RegionGrid regions{plane};
     MomentPlan plan;
     std::vector<RatedPatch> rated;
 
-    double find(double samples) { return find(MomentBudget{samples, {}, {}, 0}); }
+    double find(double samples) { return find(MomentBudget{samples, {}, 0, 0}); }
     double find(MomentBudget const& budget) {
-        plan.find(mirror, field, budget, rated);
+        plan.find(mirror, regions, budget, rated);
         double cost = 0;
         for (RatedPatch const& entry : rated) {
             cost += entry.cost;
@@ -244,7 +244,7 @@ TEST(MomentPlan, RaysAreAsCheapAsTheLinkLeavesTimeForThem) {
         Planner planner;
         planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
         planner.mirror.look(view_at(-pixel), no_motions);
-        planner.plan.find(planner.mirror, planner.field, {samples, {}, {}, 0, 0, rays}, planner.rated);
+        planner.plan.find(planner.mirror, planner.regions, {samples, {}, 0, 0, 0, rays}, planner.rated);
         double traced = 0, supersampled = 0;
         for (RatedPatch const& entry : planner.rated) {
             traced += entry.samples;
@@ -274,7 +274,7 @@ TEST(MomentPlan, TheBiasChoosesBetweenWhatIsOldAndWhatIsCoarse) {
         planner.mirror.look(view_at(0), no_motions);
         planner.mirror.mark(changed);
         double const samples = 0.5 * viewport.width * viewport.height;
-        double const all = planner.find(MomentBudget{samples, {}, {}, 0, 0, 1, bias});
+        double const all = planner.find(MomentBudget{samples, {}, 0, 0, 0, 1, bias});
         double in_changed = 0, levels = 0;
         for (RatedPatch const& entry : planner.rated) {
             in_changed += plane.tile_rect(entry.patch.node).left < middle ? entry.cost : 0;
@@ -297,18 +297,39 @@ TEST(MomentPlan, WhatComesIntoViewIsFirst) {
     planner.mirror.look(view_at(20 * pixel), no_motions);
     planner.find(viewport.width * viewport.height);
     double const samples = 20.0 * viewport.height; // what the strip takes
-    select_patches(samples, samples, planner.rated);
+    select_most_urgent(samples, samples, planner.rated);
     ASSERT_FALSE(planner.rated.empty());
     for (Tile const tile : planner.tiles()) {
         EXPECT_GT(plane.tile_rect(tile).right, viewport.width - 20);
     }
 }
 
+/// Of what moves nothing finer than a pixel is worth its samples; of what stands it is, where detail is.
+TEST(MomentPlan, OfWhatStandsDetailGetsFinerSamplesThanPixels) {
+    for (bool const rests : {false, true}) {
+        Planner planner;
+        planner.mirror.look(view_at(0), no_motions);
+        planner.mirror.add(view_at(0).rays, no_motions, render_pieces(plane, plane.pixel_depth(), half_busy));
+        MirrorView later = view_at(0);
+        later.scene_time = 1;
+        planner.mirror.look(later, no_motions);
+        planner.find(MomentBudget{20.0 * viewport.width * viewport.height, {}, 0, 0, 0, 1, 0, rests});
+        double finest = 0;
+        for (Tile const tile : planner.tiles()) {
+            if (tile.depth() == plane.max_depth()) {
+                finest += 1;
+                EXPECT_GE(plane.tile_rect(tile).left, 124) << "the flat half is as good as it gets";
+            }
+        }
+        EXPECT_EQ(finest > 0, rests || planner.mirror.camera_stands());
+    }
+}
+
 TEST(MomentPlan, WhatIsTakenIsNotTakenAgain) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);
-    for (std::uint32_t const index : planner.field.visible()) {
-        planner.field[index].taken = {sampling_levels - 1, 0, 0};
+    for (std::uint32_t const index : planner.regions.visible()) {
+        planner.regions[index].taken = {finest_level, 0};
     }
     planner.find(1e6);
     EXPECT_TRUE(planner.rated.empty());

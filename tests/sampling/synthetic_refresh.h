@@ -42,6 +42,8 @@ public:
     SyntheticRefresh(Viewport viewport, Shading shading) : shading_(std::move(shading)) {
         input.state.view.viewport = viewport;
         input.samples_per_second = std::max(4.0 * viewport.width * viewport.height, 1e5);
+        input.motions = &motions_;
+        input.moves_samples = false;
     }
 
     /// Plans and renders a batch, which takes its time; learns and sends it, or the one before where it is pipelined.
@@ -51,7 +53,7 @@ public:
         if (running && camera_speed > 0) {
             input.state.view.camera.position.x = camera_speed * static_cast<float>(input.now);
         }
-        if (moment_length <= 0 || !running) {
+        if (!running) {
             input.moment.reset();
         } else if (!input.moment || input.now >= input.moment->begun + moment_length) {
             input.moment = HeldMoment{input.state, input.now};
@@ -114,7 +116,7 @@ public:
     bool running = true; ///< the scene clock
     double stopped_at = 0; ///< scene time while it is not
     float camera_speed = 0; ///< metres a second, while the clock runs; what is to be seen is the same everywhere
-    double moment_length = 0; ///< seconds; > 0: moments are held while the clock runs
+    double moment_length = 0.05; ///< seconds for which moments are held while the clock runs
     AdaptiveRefresh refresh;
 
     // What the last step planned and sent:
@@ -180,6 +182,7 @@ private:
     }
 
     Shading shading_;
+    BodyMotions motions_;
     RefreshPlan rendered_plan_; ///< what was rendered and is not learnt yet
     std::vector<FrameletShape> shapes_; ///< of what is sent
     std::uint64_t batch_ = 0;

@@ -96,9 +96,9 @@ TEST_P(SessionFailure, WhenItBegins) {
     RawViewer small(server.port());
     small.send(camera_update(1, {64, 48}));
     ASSERT_TRUE(small.watch(is_batch));
-    ScarceMemory const scarce(4'000'000); // less than the table of what tiles showed
+    ScarceMemory const scarce(8'000'000); // less than what is kept of the places of a large picture
     RawViewer late(server.port());
-    late.send(camera_update(1, {64, 48}));
+    late.send(camera_update(1, {4096, 2048}));
     expect_only_one_ends(late, small);
 }
 
@@ -109,7 +109,7 @@ TEST_P(SessionFailure, WhileABatchIsPlanned) {
         viewer->send(camera_update(1, {64, 48}));
         ASSERT_TRUE(viewer->watch(is_batch));
     }
-    ScarceMemory const scarce(1'500'000); // less than the field of a large picture
+    ScarceMemory const scarce(1'500'000); // less than what is kept of the places of a large picture
     large.send(camera_update(2, {4096, 2048}));
     expect_only_one_ends(large, small);
 }

@@ -18,9 +18,8 @@ ViewState state_at(SceneTime time, float x = 0) {
 }
 
 /// Chooses a moment of the present where one is to be begun; returns the moment that is held.
-std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now, bool viewer_moves_samples,
-                                 double seconds = 0.1) {
-    if (moments.observe(present, now, viewer_moves_samples)) {
+std::optional<HeldMoment> choose(MomentChoice& moments, ViewState const& present, double now, double seconds = 0.1) {
+    if (moments.observe(present, now)) {
         moments.begin({present, now, seconds});
     }
     return moments.held();
@@ -32,7 +31,7 @@ TEST(MomentChoice, WhatMovesIsSeenAtAFewMomentsASecond) {
         std::set<SceneTime> seen;
         for (int i = 0; i < 1000; ++i) {
             double const now = 5.003 + 0.001 * i;
-            auto const moment = choose(moments, state_at(now), now, true, seconds);
+            auto const moment = choose(moments, state_at(now), now, seconds);
             ASSERT_TRUE(moment);
             EXPECT_LE(now - moment->begun, seconds + 1e-9);
             EXPECT_EQ(moment->state.scene_time, moment->begun);
@@ -75,9 +74,9 @@ TEST(MomentChoice, ViewersOfOneSceneChangeTogether) {
     MomentChoice one, other;
     double const late = 7.04;
     for (double now = 7.01; now < 8; now += 0.002) {
-        auto const moment = choose(one, state_at(now), now, true);
+        auto const moment = choose(one, state_at(now), now);
         if (now > late) {
-            auto const same = choose(other, state_at(now), now, true);
+            auto const same = choose(other, state_at(now), now);
             if (now > 7.1) {
                 EXPECT_EQ(moment->state.scene_time, same->state.scene_time);
             }
@@ -87,11 +86,11 @@ TEST(MomentChoice, ViewersOfOneSceneChangeTogether) {
 
 TEST(MomentChoice, AtRestThePresentIsRendered) {
     MomentChoice moments;
-    ASSERT_TRUE(choose(moments, state_at(1, 2), 10, true));
-    EXPECT_TRUE(choose(moments, state_at(1, 2), 10 + 0.9 * rest_seconds, true));
-    EXPECT_FALSE(choose(moments, state_at(1, 2), 10 + 1.1 * rest_seconds, true));
+    ASSERT_TRUE(choose(moments, state_at(1, 2), 10));
+    EXPECT_TRUE(choose(moments, state_at(1, 2), 10 + 0.9 * rest_seconds));
+    EXPECT_FALSE(choose(moments, state_at(1, 2), 10 + 1.1 * rest_seconds));
     // A camera that begins to move is seen at once.
-    auto const moment = choose(moments, state_at(1, 3), 12.01, true);
+    auto const moment = choose(moments, state_at(1, 3), 12.01);
     ASSERT_TRUE(moment);
     EXPECT_EQ(moment->state.view.camera.position.x, 3);
 }
@@ -100,49 +99,42 @@ TEST(MomentChoice, AfterTheClockWasSetTheMomentIsCompletedFirst) {
     double const later = 10 + 0.9 * stop_seconds;
     for (bool const completes : {false, true}) {
         MomentChoice moments;
-        choose(moments, state_at(1), 9.99, true);
+        choose(moments, state_at(1), 9.99);
         moments.note_clock_set();
-        ASSERT_TRUE(choose(moments, state_at(1.1), 10, true, 1));
+        ASSERT_TRUE(choose(moments, state_at(1.1), 10, 1));
         if (completes) {
             moments.note_complete(10.01);
         }
-        EXPECT_TRUE(choose(moments, state_at(1.1), 10 + 0.9 * rest_seconds, true, 1));
-        EXPECT_EQ(choose(moments, state_at(1.1), later, true, 1).has_value(), !completes);
-        EXPECT_FALSE(choose(moments, state_at(1.1), 10 + 1.1 * stop_seconds, true, 1));
-        ASSERT_TRUE(choose(moments, state_at(3), 12, true, 1)); // the clock goes on
-        EXPECT_FALSE(choose(moments, state_at(3), 12 + 1.1 * rest_seconds, true, 1)) << "nobody set it this time";
+        EXPECT_TRUE(choose(moments, state_at(1.1), 10 + 0.9 * rest_seconds, 1));
+        EXPECT_EQ(choose(moments, state_at(1.1), later, 1).has_value(), !completes);
+        EXPECT_FALSE(choose(moments, state_at(1.1), 10 + 1.1 * stop_seconds, 1));
+        ASSERT_TRUE(choose(moments, state_at(3), 12, 1)); // the clock goes on
+        EXPECT_FALSE(choose(moments, state_at(3), 12 + 1.1 * rest_seconds, 1)) << "nobody set it this time";
         moments.note_clock_set();
-        ASSERT_TRUE(choose(moments, state_at(9), 14, true, 1));
-        EXPECT_FALSE(choose(moments, state_at(9), 14 + 1.1 * rest_seconds, true, 1)) << "nothing of that time is held";
+        ASSERT_TRUE(choose(moments, state_at(9), 14, 1));
+        EXPECT_FALSE(choose(moments, state_at(9), 14 + 1.1 * rest_seconds, 1)) << "nothing of that time is held";
     }
 }
 
 TEST(MomentChoice, WhatHasNotBeenLookedAtForAWhileHasNotRested) {
     MomentChoice moments;
-    double const begun = choose(moments, state_at(1), 5.21, true, 0.4)->begun;
-    EXPECT_EQ(choose(moments, state_at(1.2), 5.4, true, 0.4)->begun, begun);
-    EXPECT_EQ(choose(moments, state_at(1.3), 5.5, true, 0.4)->begun, begun);
+    double const begun = choose(moments, state_at(1), 5.21, 0.4)->begun;
+    EXPECT_EQ(choose(moments, state_at(1.2), 5.4, 0.4)->begun, begun);
+    EXPECT_EQ(choose(moments, state_at(1.3), 5.5, 0.4)->begun, begun);
 }
 
 TEST(MomentChoice, AnotherSizeOrExposureBeginsAnew) {
     MomentChoice moments;
     double now = 3.001;
-    choose(moments, state_at(1), now, true);
+    choose(moments, state_at(1), now);
     ViewState other = state_at(1.001);
     other.exposure = 2;
-    EXPECT_EQ(choose(moments, other, now += 0.001, true)->state.exposure, 2);
+    EXPECT_EQ(choose(moments, other, now += 0.001)->state.exposure, 2);
     other.view.viewport = {32, 32};
-    EXPECT_EQ(choose(moments, other, now += 0.001, true)->state.view.viewport, other.view.viewport);
+    EXPECT_EQ(choose(moments, other, now += 0.001)->state.view.viewport, other.view.viewport);
     moments.forget();
     other.scene_time = 9;
-    EXPECT_EQ(choose(moments, other, now += 0.001, true)->state.scene_time, 9);
-}
-
-TEST(MomentChoice, AViewerThatMovesNothingSeesThePresent) {
-    MomentChoice moments;
-    for (double now = 1; now < 2; now += 0.01) {
-        EXPECT_FALSE(choose(moments, state_at(now), now, false));
-    }
+    EXPECT_EQ(choose(moments, other, now += 0.001)->state.scene_time, 9);
 }
 
 } // namespace

@@ -34,8 +34,9 @@ bool Mirror::looks_at(MirrorView const& view) const {
     return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
 }
 
-void Mirror::look(MirrorView const& view, BodyMotions const& motions) {
+void Mirror::look(MirrorView const& view, BodyMotions const& motions, bool moves_samples) {
     target_ = view;
+    moves_samples_ = moves_samples;
     camera_stands_ = moments_[base_].number == 0 || same_camera(moments_[base_].rays, view.rays);
     if (std::exchange(settles_, false)) {
         settle_now();
@@ -112,7 +113,8 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
     standing_.clear();
     moving_.clear();
     for (Piece const& piece : pieces) {
-        bool const stands = !piece.moves || piece.rests || piece.is_brief || moments_[base_].scene_time == scene_time;
+        bool const stands = !moves_samples_ || !piece.moves || piece.rests || piece.is_brief ||
+                            moments_[base_].scene_time == scene_time;
         (stands ? standing_ : moving_).push_back(piece);
     }
     add_to(moments_[base_], motions, standing_);
@@ -122,7 +124,12 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
 }
 
 void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces) {
-    replace(moment, pieces);
+    find_newest(pieces);
+    for (Moment& held : moments_) { // a viewer that moves nothing shows the newest at each position, of whatever moment
+        if (&held == &moment || !moves_samples_) {
+            replace(held);
+        }
+    }
     std::size_t const first = moment.pieces.size();
     moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
     draw(moment, first, motions, true);
@@ -167,7 +174,8 @@ void Mirror::settle_now() {
         empty(moment);
     }
     base.number = newest;
-    replace(base, base.pieces);
+    find_newest(base.pieces);
+    replace(base);
 }
 
 /// A free slot; when all are used, that of the oldest moment, but not the base.
@@ -202,41 +210,46 @@ void Mirror::give_back_room(Moment& moment) {
     }
 }
 
-/// Marks those pieces of a moment as replaced that are older than these: a viewer holds the newest of one moment at
-/// each position.
-void Mirror::replace(Moment& moment, std::span<Piece const> pieces) {
-    if (moment.pieces.empty() || pieces.empty()) {
-        return;
-    }
+std::size_t Mirror::cell_under(Vec2 at) const {
     auto const clamped = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::floor(pixel)) / cell_side, 0, count - 1);
     };
+    return index_of(clamped(at.x, columns_), clamped(at.y, rows_));
+}
+
+/// Finds for each cell of their own picture the newest batch of which one of these is.
+void Mirror::find_newest(std::span<Piece const> pieces) {
     newest_batch_.assign(cells_.size(), 0);
+    auto const columns = static_cast<std::size_t>(columns_);
     for (Piece const& piece : pieces) {
-        Vec2 const low = piece.centre - piece.half_side + 0.1f;
-        Vec2 const high = piece.centre + piece.half_side - 0.1f;
-        for (int row = clamped(low.y, rows_); row <= clamped(high.y, rows_); ++row) {
-            for (int column = clamped(low.x, columns_); column <= clamped(high.x, columns_); ++column) {
-                std::uint64_t& newest = newest_batch_[index_of(column, row)];
+        std::size_t const low = cell_under(piece.centre - piece.half_side + 0.1f);
+        std::size_t const high = cell_under(piece.centre + piece.half_side - 0.1f);
+        for (std::size_t row = low / columns; row <= high / columns; ++row) {
+            for (std::size_t column = low % columns; column <= high % columns; ++column) {
+                std::uint64_t& newest = newest_batch_[row * columns + column];
                 newest = std::max(newest, piece.of.batch);
             }
         }
     }
+}
+
+/// Marks those pieces of a moment as replaced that are older than the newest at their position.
+void Mirror::replace(Moment& moment) {
     for (Piece& piece : moment.pieces) {
-        std::size_t const cell = index_of(clamped(piece.centre.x, columns_), clamped(piece.centre.y, rows_));
-        piece.is_replaced = piece.is_replaced || piece.of.batch < newest_batch_[cell];
+        piece.is_replaced = piece.is_replaced || piece.of.batch < newest_batch_[cell_under(piece.centre)];
     }
 }
 
 /// True where outliers of a moment show: those of the base and of the newest moments, of which one may be still to
 /// come.
 bool Mirror::shows_outliers(Moment const& moment) const {
-    return &moment == &moments_[base_] ||
+    return !moves_samples_ || &moment == &moments_[base_] ||
            moment.number + FrameletPool::recent_moments > last_number_ + (awaits_moment_ ? 1 : 0);
 }
 
 PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& motions) const {
-    return {moment.rays, target_, Vec2(columns_, rows_) * float{cell_side}, &motions}; // the last cells are whole, too
+    Vec2 const size = Vec2(columns_, rows_) * float{cell_side}; // the last cells are whole, too
+    return {moment.rays, target_, size, &motions, moves_samples_};
 }
 
 /// Draws the pieces of a moment, from `first` on, into the cells. `is_new`: they have just come.
@@ -254,6 +267,27 @@ void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions,
     }
     if (&moment == &moments_[base_] && moment.is_of_camera) {
         cover_from(moment, first);
+    }
+    if (!moves_samples_) {
+        expect_from(moment, first);
+    }
+}
+
+/// Marks where what the pieces of a moment show has gone to, which a viewer that moves nothing does not show there.
+void Mirror::expect_from(Moment const& moment, std::size_t first) {
+    for (std::size_t i = first; i < moment.pieces.size(); ++i) {
+        ReprojectedPiece const& piece = moment.reprojected[i];
+        float const way = glm::length(piece.way);
+        if (way < 1) {
+            continue;
+        }
+        float const stale = std::min(moment.pieces[i].detail * way, lost_error);
+        Vec2 const at = piece.at + piece.way;
+        for_each_covered(at - piece.half_side, at + piece.half_side, columns_, rows_,
+                         [&](int column, int row, unsigned) {
+                             Cell& cell = cells_[index_of(column, row)];
+                             cell.stale = std::max(cell.stale, stale);
+                         });
     }
 }
 
@@ -332,6 +366,9 @@ bool Mirror::is_better(Moment const& moment, ReprojectedPiece const& reprojected
                        Cell const& cell) const {
     if (share < least_share || cell.share < least_share) {
         return share > cell.share;
+    }
+    if (!moves_samples_) { // what came last shows
+        return moment.number >= moments_[cell.moment].number;
     }
     if (reprojected.is_lost || cell.is_lost) {
         return reprojected.is_lost != cell.is_lost ? cell.is_lost : reprojected.worn < cell.worn;

@@ -39,12 +39,14 @@ public:
     /// The luma that a cell shows at a position in its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     /// True where a new framelet takes the place of what shows, be it better or not: what shows is of the base of the
-    /// camera that is looked through, or out of date.
+    /// camera that is looked through, or out of date, or the viewer moves nothing.
     bool gives_way(Cell const& cell) const {
-        return cell.is_outdated || (cell.moment == base_ && moments_[base_].is_of_camera);
+        return cell.is_outdated || !moves_samples_ || (cell.moment == base_ && moments_[base_].is_of_camera);
     }
-    /// True where what shows was rendered for another camera: the viewer interpolates between its samples.
-    bool is_moved(Cell const& cell) const { return !moments_[cell.moment].is_of_camera; }
+    /// True where what shows was rendered for another camera and moved: the viewer interpolates between its samples.
+    bool is_moved(Cell const& cell) const { return moves_samples_ && !moments_[cell.moment].is_of_camera; }
+    /// False for a viewer that leaves samples where they were rendered.
+    bool moves_samples() const { return moves_samples_; }
     /// True when the camera looked through is that of the newest base that had come by then, or none had: as far as is
     /// known, the camera stands.
     bool camera_stands() const { return camera_stands_; }
@@ -53,8 +55,9 @@ public:
     /// True when the picture looked at is of this moment.
     bool looks_at(MirrorView const& view) const;
 
-    /// Finds what the viewer shows of `view` as bodies move by `motions`.
-    void look(MirrorView const& view, BodyMotions const& motions);
+    /// Finds what the viewer shows of `view` as bodies move by `motions`. `moves_samples`: it moves what it holds, from
+    /// and to perspective cameras.
+    void look(MirrorView const& view, BodyMotions const& motions, bool moves_samples = true);
     /// Adds pieces of one camera and one scene time that the viewer gets: they are remembered, and shown at once.
     void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
     /// Notes that the viewer settles (`FrameletPool::settle`), from the next look on.
@@ -79,7 +82,9 @@ private:
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
     void erase_forgotten();
-    void replace(Moment& moment, std::span<Piece const> pieces);
+    std::size_t cell_under(Vec2 at) const;
+    void find_newest(std::span<Piece const> pieces);
+    void replace(Moment& moment);
     void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
     bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
     void settle_now();
@@ -92,6 +97,7 @@ private:
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
     void draw(Moment& moment, std::size_t first, BodyMotions const& motions, bool is_new);
     void cover_from(Moment const& moment, std::size_t first);
+    void expect_from(Moment const& moment, std::size_t first);
     void cover(Moment const& moment, std::size_t index);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new);
     void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
@@ -109,6 +115,7 @@ private:
     std::size_t base_ = 0; ///< slot of what stands before the newest camera
     bool settles_ = false;
     MirrorView target_;
+    bool moves_samples_ = true;
     bool camera_stands_ = false;
     bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include <glm/matrix.hpp>
 
@@ -21,6 +22,9 @@ constexpr float margin = 0.5f;
 constexpr float renewal_seconds = 0.1f;
 /// A plane whose area shrinks by more than this is seen edge-on.
 constexpr float thinnest = 1e-4f;
+/// Pixels of spacing by which samples seem to lie farther apart for each pixel that they are out of place.
+constexpr float wear_of_way = 1;
+constexpr float most_way = 1e4f; ///< pixels
 
 BodyTransform make_body_transform(PieceReprojection const& reprojection, Motion const& motion, std::uint64_t stamp) {
     ViewRays const& source = reprojection.source;
@@ -123,17 +127,64 @@ ReprojectedPiece reproject(Piece const& piece, BodyTransform const& body, Displa
     return reprojected;
 }
 
+/// The pixel at which a camera sees a point; nothing where that is behind it.
+std::optional<Vec2> pixel_of(ViewRays const& rays, Vec3 point) {
+    bool const perspective = rays.direction_dx != Vec3(0);
+    Vec3 const dx = perspective ? rays.direction_dx : rays.origin_dx;
+    Vec3 const dy = perspective ? rays.direction_dy : rays.origin_dy;
+    Vec3 from = point - rays.origin;
+    if (perspective) {
+        Vec3 const normal = glm::cross(dx, dy);
+        float const depth = glm::dot(from, normal) / glm::dot(rays.direction, normal);
+        if (!(depth > 0)) {
+            return std::nullopt;
+        }
+        from = from / depth - rays.direction;
+    }
+    Vec2 const pixel(glm::dot(from, dx) / glm::dot(dx, dx), glm::dot(from, dy) / glm::dot(dy, dy));
+    return std::isfinite(pixel.x) && std::isfinite(pixel.y) ? std::optional(pixel) : std::nullopt;
+}
+
+/// Leaves one piece where it was rendered, as a viewer does that moves nothing, and finds how far what it shows has
+/// gone. `stands`: the camera of both pictures is the same.
+ReprojectedPiece leave(Piece const& piece, PieceReprojection const& reprojection, bool stands) {
+    constexpr float least_inverse_depth = 1e-6f; // 1 / metres; what is farther stands
+    SceneTime const to = reprojection.display.scene_time;
+    auto const age = static_cast<float>(to - piece.scene_time);
+    Motion const motion =
+        piece.body == static_body ? Motion{} : reprojection.motions->between(piece.body, piece.scene_time, to);
+    ReprojectedPiece left;
+    left.at = piece.centre;
+    left.half_side = piece.half_side;
+    left.inverse_depth = piece.inverse_depth;
+    left.is_still = stands && motion == Motion{} && !piece.drift.any();
+    if (!left.is_still) {
+        ViewRays const& rays = reprojection.source;
+        float const depth = 1 / std::max(piece.inverse_depth, least_inverse_depth);
+        Vec2 const at = piece.centre;
+        Vec3 const seen = rays.origin + at.x * rays.origin_dx + at.y * rays.origin_dy +
+                          depth * (rays.direction + at.x * rays.direction_dx + at.y * rays.direction_dy);
+        Vec3 const now = Vec3(motion.linear * glm::dvec3(seen) + motion.offset) + piece.drift.after(age);
+        auto const gone = pixel_of(reprojection.display.rays, now);
+        left.way = gone ? glm::clamp(*gone - at, Vec2(-most_way), Vec2(most_way)) : Vec2(most_way);
+    }
+    float const rate = left.is_still ? 0 : piece.decorrelation;
+    left.worn = worn_step(worn_spacing(piece.spacing, age, rate) + wear_of_way * glm::length(left.way));
+    return left;
+}
+
 } // namespace
 
 bool same_camera(ViewRays const& a, ViewRays const& b) {
-    return a.origin == b.origin && a.direction == b.direction && a.direction_dx == b.direction_dx &&
-           a.direction_dy == b.direction_dy;
+    return a.origin == b.origin && a.origin_dx == b.origin_dx && a.origin_dy == b.origin_dy &&
+           a.direction == b.direction && a.direction_dx == b.direction_dx && a.direction_dy == b.direction_dy;
 }
 
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
                BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
     ++transforms.stamp;
     TimeSpan const valid = reprojection.motions->between_jumps(reprojection.display.scene_time);
+    bool const stands = same_camera(reprojection.source, reprojection.display.rays);
     auto const focal = [](ViewRays const& rays) { return 1 / glm::length(rays.direction_dx); };
     Display const display{reprojection.display_size, focal(reprojection.source), focal(reprojection.display.rays)};
     for (std::size_t i = 0; i < pieces.size(); ++i) {
@@ -142,9 +193,13 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
             ++transforms.stamp; // bodies were elsewhere
         }
         auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
-        reprojected.push_back(with_outliers || !piece.is_outlier
-                                  ? reproject(piece, transform_of(reprojection, piece, transforms), display, age)
-                                  : ReprojectedPiece{});
+        if (!reprojection.moves_samples) {
+            reprojected.push_back(leave(piece, reprojection, stands));
+        } else if (with_outliers || !piece.is_outlier) {
+            reprojected.push_back(reproject(piece, transform_of(reprojection, piece, transforms), display, age));
+        } else {
+            reprojected.emplace_back();
+        }
         reprojected.back().is_outdated = !valid.contains(piece.scene_time);
     }
 }

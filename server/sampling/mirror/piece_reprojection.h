@@ -1,6 +1,6 @@
-// Finds where pieces lie in the picture of another moment, as the viewer moves what it holds. In: pieces of one moment,
-// the cameras and times of both, how bodies move. Out: for each piece the box that it covers, how near and how worn it
-// is.
+// Finds where pieces lie in the picture of another moment. A viewer moves what it holds there; or it leaves all where
+// it was rendered, which then is as worn as it is out of place. In: pieces of one moment, the cameras and times of
+// both, how bodies move. Out: for each piece the box that it covers, how near and how worn it is.
 #pragma once
 
 #include <array>
@@ -14,13 +14,13 @@
 
 namespace framelet {
 
-/// A camera (perspective) and a scene time.
+/// A camera and a scene time.
 struct MirrorView {
     ViewRays rays{};
     SceneTime scene_time = 0;
 };
 
-/// True where perspective cameras see the same.
+/// True where cameras see the same.
 bool same_camera(ViewRays const& a, ViewRays const& b);
 
 /// A piece in the picture of another moment.
@@ -32,6 +32,7 @@ struct ReprojectedPiece {
     float tolerance = 0; ///< by which its inverse depths may differ, 1 / metres
     float scale = 1; ///< how much larger it is than it was rendered
     float worn = 0; ///< worn spacing, pixels
+    Vec2 way{0}; ///< of a viewer that moves nothing: how far what it shows has gone from there, pixels
     bool leads = false; ///< a shadow that shows before what it comes over
     bool is_still = false; ///< its pixels are where they were rendered
     bool is_outdated = false; ///< the scene has jumped since it was rendered
@@ -63,6 +64,7 @@ struct PieceReprojection {
     MirrorView display{};
     Vec2 display_size{0}; ///< pixels
     BodyMotions const* motions = nullptr; ///< not null
+    bool moves_samples = true; ///< the viewer does, from and to perspective cameras
 };
 
 /// Appends one to `reprojected` for each piece. Not in the picture are outliers unless `with_outliers`, what lies

@@ -1,17 +1,17 @@
-// Decides what one viewer's picture gets next, adaptively: price -> choices -> density -> tiling -> selection; and
-// learns from what was rendered. In: what is to be seen, when, how many samples a cycle has time for; then the
-// framelets. Out: tiles and probes to render, and which of the framelets are worth sending. A batch may be planned
-// before earlier ones are learnt: what has been taken counts as what the viewer will hold, and is not taken again
-// meanwhile.
+// Decides what one viewer's picture gets next, and learns from what was rendered. In: what is to be seen, when, how
+// many samples a cycle has time for; then the framelets. Out: tiles and checks to render, and which of the framelets
+// are worth sending. A batch may be planned before earlier ones are learnt: what has been taken counts as what the
+// viewer will hold, and is not taken again meanwhile.
+//
+// There is one plan for all: of a moment while things move, of the present once they stand, for viewers that move what
+// they hold and for those that do not. Only once nothing is worth its samples any more is a picture that stands
+// completed whatever the plan says.
 #pragma once
 
 #include <optional>
 #include <vector>
 
-#include "server/sampling/plan/batch_learning.h"
-#include "server/sampling/plan/patch_selection.h"
-#include "server/sampling/plan/probe_selection.h"
-#include "server/sampling/plan/refinement_selection.h"
+#include "server/sampling/held/held_tiles.h"
 #include "server/sampling/plan/refresh_plan.h"
 
 namespace framelet {
@@ -30,8 +30,8 @@ public:
     void plan(RefreshInput const& input, RefreshPlan& plan);
 
     /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. Plans are learnt
-    /// once each and in order. Returns for each framelet whether the viewer needs it, which it does not where its
-    /// picture has another size by now; valid until the next call.
+    /// once each and in order. Returns for each framelet whether the viewer needs it, which it does not where it shows
+    /// the same already, or its picture has another size by now; valid until the next call.
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
                                            std::span<Framelet const> rendered, std::span<float const> probe_luma);
 
@@ -48,51 +48,43 @@ public:
     /// Notes that the viewer is told that it holds all of the picture.
     void settle() { moments_.settle(); }
 
+    /// What the viewer got last at each place.
+    HeldTiles& held_tiles() { return held_tiles_; }
+    HeldTiles const& held_tiles() const { return held_tiles_; }
+
     // These let others look at what it decides.
     Mirror const& mirror() const { return moments_.mirror(); }
-    RegionField const& field() const { return field_; }
-    Choices const& choices() const { return choices_; }
-    float price() const { return price_; }
-    /// The cycle that was planned last: how many there have been, its tiling, the patches to render, the samples
-    /// that it has time for (by what they cost), from which patch on each sample is made of four rays, and its length.
+    RegionGrid const& regions() const { return regions_; }
+    /// The cycle that was planned last: how many there have been, the patches to render, the samples that it has time
+    /// for (by what they cost), and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
-    std::vector<Patch> const& cut() const { return cut_; }
     std::vector<Patch> const& cycle() const { return cycle_; }
     double cycle_budget() const { return cycle_budget_; }
-    std::size_t first_supersampled() const { return first_supersampled_; }
     double cycle_seconds() const { return cycle_seconds_; }
 
 private:
-    bool goes_on(RefreshInput const& input, bool mirrored) const;
-    void advance(RefreshInput const& input);
-    void note_base(Camera const& camera, bool moves_samples, double now);
-    void plan_cycle(RefreshInput const& input, RefreshPlan& plan);
-    double plan_periodic_refreshes(RefreshInput const& input);
-    void find_costs(RefreshInput const& input);
-    void plan_patches(RefreshInput const& input, double samples);
-    void append_rated(double samples, double rays);
-    void plan_moment(RefreshInput const& input, double samples, RefreshPlan& plan);
-    void plan_probes(double samples, RefreshPlan& plan);
+    void see(RefreshInput const& input);
+    bool goes_on(RefreshInput const& input, HeldMoment const& moment) const;
+    double planned_together(RefreshInput const& input, RefreshPlan const& plan) const;
+    void plan_cycle(RefreshInput const& input, double begun, RefreshPlan& plan);
+    void append_rated(double samples, double rays, bool prices_bytes);
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
 
-    static constexpr float first_price = 1e-6f;
-
-    std::optional<ViewState> seen_;
+    std::optional<ViewState> seen_; ///< what the last plan was for: the present
     double still_since_ = 0; ///< when what is to be seen changed last, seconds
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
-    std::optional<Camera> base_camera_; ///< of the last plan, where the viewer moves its samples
-    double base_begun_ = never; ///< when its first plan was made since there was another camera, seconds
+    bool moves_samples_ = true; ///< of the last plan
+    std::optional<Camera> camera_; ///< of the last plan
+    std::uint64_t cameras_ = 0; ///< counts those for which a viewer moves all that it holds
+    ViewState planned_state_; ///< that the cycle renders
+    double planned_ = never; ///< when the cycle was planned, seconds
     bool scene_moves_ = false;
-    bool still_ = false; ///< what is to be seen is what the last plan was for
-    RegionField field_;
-    LumaHistory history_;
-    std::vector<LevelCosts> costs_; ///< of samples, by region; none where all cost the same
+    RegionGrid regions_;
+    HeldTiles held_tiles_;
+    MomentRefresh moments_;
     /// Mean bits of a sample planned lately, as estimated. It begins below what pictures have, so that a slow link is
     /// not filled with the first of them (measured).
     float mean_bits_ = 1;
-    Choices choices_;
-    float price_ = first_price;
-    double planned_ = never; ///< when the cycle was planned, seconds: the field is of this time
     std::uint64_t cycle_count_ = 0;
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;
@@ -100,18 +92,8 @@ private:
     std::size_t first_supersampled_ = 0; ///< index in `cycle_` from which on each sample is made of four rays
     std::size_t next_ = 0; ///< index in `cycle_` of the patch that is taken next
     std::vector<std::uint8_t> send_;
-    MomentRefresh moments_;
-
-    // Scratch.
-    std::vector<float> due_errors_;
-    std::vector<float> density_;
-    TilingScratch tiling_scratch_;
-    std::vector<Patch> cut_;
-    std::vector<RatedPatch> rated_;
-    std::vector<std::uint32_t> suspects_;
-    UnresolvedRegions unresolved_;
-    ProbeScratch probe_scratch_;
-    BatchFindings findings_;
+    std::vector<std::uint64_t> contents_; ///< scratch
+    std::vector<RatedPatch> rated_; ///< scratch
 };
 
 } // namespace framelet

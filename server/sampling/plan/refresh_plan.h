@@ -5,7 +5,6 @@
 #include <optional>
 #include <vector>
 
-#include "server/render/rays_per_sample.h"
 #include "server/sampling/plan/moment/moment_refresh.h"
 #include "server/sampling/plan/view_state.h"
 
@@ -27,10 +26,9 @@ struct RefreshInput {
     /// samples cost by the bytes that they take: `samples_per_second` then counts samples of mean cost.
     double rendered_per_second = 0;
     float cycle_seconds = least_cycle_seconds; ///< length of a cycle, after which another one is planned
-    float delivery_seconds = 0; ///< from the end of a batch's rendering until it shows
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
-    /// Motions of bodies, as a viewer knows them that moves what it holds along with them; null for one that does not.
-    BodyMotions const* motions = nullptr;
+    BodyMotions const* motions = nullptr; ///< of bodies, as the viewer knows them or would; not null
+    bool moves_samples = true; ///< the viewer moves what it holds, where cameras let it
     /// The largest number of framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all
     /// of it while nothing moves.
     std::size_t batch_framelets = 0;
@@ -48,15 +46,14 @@ std::size_t batch_limit(RefreshInput const& input, bool still);
 /// The work of one batch: what to render now.
 struct RefreshPlan {
     double now = 0; ///< when it was made, seconds
-    double still_since = 0; ///< when anything moved last, seconds
-    /// Time, seconds, since which a viewer that moves its samples has seen this camera and no other: what it was sent
-    /// before, it has moved away. `never`: it has moved nothing yet.
-    double base_begun = never;
     Viewport viewport;
     double moment_begun = 0; ///< when what is rendered was the present, seconds
     RenderedMoment moment; ///< whose motions must live until it is learnt
+    std::uint64_t camera = 0; ///< number of its camera
     bool is_new_cycle = false; ///< the cycle was planned anew; false: this is more of the last one
-    bool is_mirrored = false; ///< planned by the mirror: of a held moment, by what the viewer will see of it
+    /// The viewer moves what is rendered to other moments: it takes the place of what was there, be that the same. Else
+    /// what the viewer shows already is not sent again.
+    bool will_be_moved = false;
     ResponseLimits limits{}; ///< by which the plan was made
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
@@ -64,8 +61,7 @@ struct RefreshPlan {
     int rays_per_sample = single_ray; ///< of the tiles
     /// Positions at which what the moment shows is to be compared with what the viewer would show.
     std::optional<MomentChecks> checks;
-    std::vector<Probe> probes; ///< of the probed regions, in order, or those of a moment
-    std::vector<std::uint32_t> probed; ///< regions that are probed
+    std::vector<Probe> probes;
 
     bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
     /// Number of rays through the samples of the tiles.

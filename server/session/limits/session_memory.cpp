@@ -1,10 +1,9 @@
 #include "server/session/limits/session_memory.h"
 
 #include "protocol/codec/color/reference_picture.h"
-#include "server/sampling/field/region_field.h"
+#include "server/sampling/held/held_tiles.h"
+#include "server/sampling/held/region_grid.h"
 #include "server/sampling/mirror/mirror.h"
-#include "server/sampling/model/luma_history.h"
-#include "server/stream/flow/lossy_tiles.h"
 
 namespace framelet {
 namespace {
@@ -28,10 +27,9 @@ std::size_t session_bytes(Viewport viewport, bool predicts) {
     ImagePlane const plane(viewport);
     // Batches without an answer are kept as they are, and those that the socket has not taken as they are sent.
     std::size_t bytes = 2 * most_kept_bytes + least_bytes;
-    bytes += LumaHistory::default_entries * sizeof(LumaHistory::Entry);
     // What is known of each region, and as much again for what is worked out from it in every cycle.
-    bytes += (std::size_t{2} << (2 * field_depth(plane))) * sizeof(Region);
-    bytes += LossyTiles::bytes(plane);
+    bytes += (std::size_t{2} << (2 * region_depth(plane))) * sizeof(Region);
+    bytes += HeldTiles::bytes(viewport);
     auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
     constexpr std::size_t bytes_per_cell = sizeof(Cell) + sizeof(std::uint64_t); // and the newest batch of each
     constexpr std::size_t bytes_per_piece = sizeof(Piece) + sizeof(ReprojectedPiece);

@@ -52,8 +52,6 @@ struct SessionLoop::Pipeline {
         bool learnt = false;
         bool sends = false; ///< once it is learnt
         bool complete = false; ///< likewise: with it the viewer's picture is complete
-        CycleRecord record;
-        double now = 0; ///< when it was planned, seconds
     };
     std::optional<Rendered> rendered; ///< the batch that was rendered last, until it is finished
     tbb::task_group finishing;
@@ -243,36 +241,26 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
         return false;
     }
     viewer.rendered = now;
-    CycleRecord record;
-    record.stage_seconds.plan = laps.lap();
+    double const planning = laps.lap();
     TurnFigures const figures = stream.planned_figures();
     if (figures.is_new_cycle) {
         constexpr double weight = 0.1;
-        plan_seconds_ += weight * (record.stage_seconds.plan - plan_seconds_);
-    }
-    if (options_.recorder != nullptr && stream.scheduler() != nullptr) {
-        record.session = viewer.number;
-        record.scene_time = stream.moment();
-        record.samples_rendered = figures.rays;
-        record.probes = figures.probes;
-        describe(*stream.scheduler(), record);
-        laps.lap();
+        plan_seconds_ += weight * (planning - plan_seconds_);
     }
     pose_scene(stream.moment());
     if (pipeline_->is_unlearnt()) {
         start_finishing();
     }
     stream.render(scene_);
-    record.stage_seconds.render = laps.lap();
     wait_for_finishing();
-    record.stage_seconds.wait = laps.lap();
-    pipeline_->rendered = {session, &viewer, version, false, false, false, record, turn.now};
+    double const rendering = laps.lap(); // until the batch before was encoded and sent
+    pipeline_->rendered = {session, &viewer, version};
     if (thread_count() < many_threads) {
         finish_one(true);
         start_finishing();
     }
     double const learning = laps.lap(); // by itself
-    note_rate(figures, record.stage_seconds.render + record.stage_seconds.wait + learning);
+    note_rate(figures, rendering + learning);
     return true;
 }
 
@@ -292,14 +280,9 @@ void SessionLoop::finish_one(bool learns) {
     ViewerStream& stream = *done.viewer->stream;
     EventLog* const log = options_.event_log;
     if (learns) {
-        Laps laps;
         done.sends = stream.learn(scene_);
         done.learnt = true;
         done.complete = stream.is_complete();
-        TurnFigures const& figures = stream.learnt_figures();
-        done.record.framelets_sent = (figures.exact_samples + figures.lossy_samples) / framelet_samples;
-        done.record.framelets_unchanged = figures.framelets - done.record.framelets_sent;
-        done.record.stage_seconds.learn = laps.lap();
         if (log != nullptr) {
             log->add_learning(done.viewer->number);
         }
@@ -340,11 +323,7 @@ void SessionLoop::start_finishing() {
 
 void SessionLoop::wait_for_finishing() {
     pipeline_->finishing.wait();
-    auto const done = std::exchange(pipeline_->rendered, std::nullopt);
-    if (done && options_.recorder != nullptr && done->record.cycle > 0) {
-        contain(*done->session,
-                [&] { options_.recorder->add(done->record, *done->viewer->stream->scheduler(), done->now); });
-    }
+    pipeline_->rendered.reset();
 }
 
 /// Drops what was rendered for a session that failed, so that finishing it is not tried.

@@ -13,7 +13,6 @@
 
 #include "server/sampling/plan/render_rate.h"
 #include "server/session/clock/scene_clock.h"
-#include "server/session/loop/cycle_recorder.h"
 #include "server/session/session.h"
 #include "server/stream/framelet_stream.h"
 
@@ -23,8 +22,7 @@ class EventLog;
 
 struct LoopOptions {
     StreamOptions stream;
-    CycleRecorder* recorder = nullptr; ///< must outlive the loop; null: nothing is recorded
-    EventLog* event_log = nullptr; ///< likewise: what comes to the streams, to be replayed
+    EventLog* event_log = nullptr; ///< what comes to the streams, to be replayed; must outlive the loop; null: none
     /// Makes a viewer's stream; empty: a `FrameletStream`.
     std::function<std::unique_ptr<ViewerStream>(StreamOptions const&, std::uint32_t codings)> make_stream;
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "common/error.h"
 #include "common/framelet/framelet.h"
 
 namespace framelet {
@@ -68,6 +69,24 @@ std::uint8_t QpChoice::choose(LinkState const& link, double samples_per_second, 
     }
     changed_ = qp_ == before ? changed_ : now;
     return qp_;
+}
+
+void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, bool finish,
+                HeldTiles& held, std::vector<std::uint8_t>& qps) {
+    FRAMELET_CHECK(tiles.size() == needed.size());
+    qps.clear();
+    for (std::size_t i = 0; i < tiles.size(); ++i) {
+        bool const again = needed[i] == 0 && held.is_lossy(tiles[i]);
+        if (needed[i] != 0 || again) {
+            bool const last = finish && tiles[i].depth() == held.plane().max_depth();
+            needed[i] = 1;
+            qps.push_back(again || last ? lossless_qp : qp);
+            held.set_lossy(tiles[i], qps.back() != lossless_qp);
+        }
+    }
+    if (std::ranges::all_of(qps, [](std::uint8_t q) { return q == lossless_qp; })) {
+        qps.clear();
+    }
 }
 
 double bounded_rate(LinkState const& link, double samples_per_second) {

@@ -5,7 +5,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
+#include <vector>
 
+#include "server/sampling/held/held_tiles.h"
 #include "server/stream/flow/link_estimate.h"
 
 namespace framelet {
@@ -39,6 +42,14 @@ private:
     std::optional<double> begun_; ///< when it was asked first, seconds
     double changed_ = 0; ///< when it changed last, seconds
 };
+
+/// Chooses which framelets of a batch go to the viewer and how they are coded. `tiles`: of the picture of `held`, none
+/// over another. `needed`: what the scheduler says of each; those that are not needed, because the viewer shows the
+/// same, are added where it holds them with loss. `qp`: of the batch. `finish`: the picture stands still, and its
+/// finest tiles are the last that come: they are sent exactly. Replaces `qps` by one for each framelet that is sent, in
+/// order, or by none where all are exact; keeps account in `held`.
+void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, bool finish,
+                HeldTiles& held, std::vector<std::uint8_t>& qps);
 
 /// Samples a second that renderer and link both have time for.
 double bounded_rate(LinkState const& link, double samples_per_second);

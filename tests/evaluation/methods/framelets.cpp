@@ -162,12 +162,7 @@ private:
         if (!parts.spacing) {
             limits.least_level = limits.most_level = pixel_level;
         }
-        if (!parts.price) {
-            limits.least_price = limits.most_price = 1e-6f; // the price of the first cycle
-        }
         limits.probe_share = parts.probes ? limits.probe_share : 0;
-        limits.periodic_share = parts.periodic_refresh ? limits.periodic_share : 0;
-        limits.mirrors = parts.mirror;
         limits.visibility_share = parts.visibility ? limits.visibility_share : 0;
         limits.plans_together = parts.planned_together;
         limits.coarse_first = parts.coarse_first;
@@ -208,7 +203,7 @@ private:
 
     /// Seconds that planning a cycle takes on the calibrated machine.
     double plan_seconds() const {
-        auto const regions = static_cast<double>(stream_->scheduler()->field().visible().size());
+        auto const regions = static_cast<double>(stream_->scheduler()->regions().visible().size());
         return 1e-9 * regions * setup_.costs.plan_region;
     }
 

@@ -11,10 +11,13 @@
 namespace framelet {
 namespace {
 
-/// Detail of what nothing is known of, as `unknown_region` has it.
+/// Detail of what nothing is known of.
 constexpr float unknown_detail = 0.0025f;
 /// Squared luma by which what was rendered before the scene jumped is taken to look otherwise, where no probe has told.
 constexpr float outdated_error = 2e-4f;
+/// Squared luma by which what the viewer has moved is taken to look otherwise once all stands. What has not is as
+/// likely right, and finer than what would take its place.
+constexpr float moved_doubt = 1e-3f;
 /// The largest error of samples: however coarse they are, their mean is about right.
 constexpr float most_error = 0.1f;
 /// Pixels of spacing that interpolated samples seem to lie farther apart, beside those that come to lie on their own
@@ -25,11 +28,6 @@ constexpr float least_price = 5e-6f, most_price = 1e2f;
 
 constexpr std::size_t supersampled = MomentPlan::supersampled;
 using ChoiceFigures = MomentPlan::ChoiceFigures;
-
-constexpr float spacing_of(int level) {
-    return level <= pixel_level ? static_cast<float>(1 << (pixel_level - level))
-                                : 1.0f / static_cast<float>(1 << (level - pixel_level));
-}
 
 /// Error of samples `s` pixels apart, as a multiple of the detail: what they miss, and what aliases.
 constexpr float missed_share(float s) {
@@ -84,6 +82,11 @@ bool stays(Mirror const& mirror, Cell const& cell) {
     return !cell.moves && cell.decorrelation < most_decorrelation;
 }
 
+/// True where what shows was rendered for another moment and has been moved to this one.
+bool has_moved(Mirror const& mirror, Cell const& cell) {
+    return mirror.is_moved(cell) || (cell.moves && mirror.time_of(cell) != mirror.view().scene_time);
+}
+
 /// The detail for which a cell counts: the geometric mean of its own and of the picture's. What is known of a cell's
 /// detail is a few differences of samples, which tend to be nearer to the mean than they seem; and a difference is seen
 /// the less the more differs beside it.
@@ -92,7 +95,7 @@ float counted_detail(float detail, float mean) {
 }
 
 /// Mean squared error of samples `spacing` pixels apart (worn), of a surface of such `detail` (see `Piece`): what is
-/// missing and what aliases, as `unresolved_error` has it where each band has half the energy of the coarser one.
+/// missing and what aliases.
 float spacing_error(float detail, float spacing) {
     return std::min(detail * missed_share(spacing), most_error);
 }
@@ -111,102 +114,121 @@ void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
 
 } // namespace
 
-void MomentPlan::find(Mirror const& mirror, RegionField const& field, MomentBudget const& budget,
+void select_most_urgent(double budget, double most_samples, std::vector<RatedPatch>& rated) {
+    std::sort(rated.begin(), rated.end(), [](RatedPatch const& a, RatedPatch const& b) {
+        return a.urgency != b.urgency ? a.urgency > b.urgency : a.patch.node < b.patch.node;
+    });
+    double spent = 0;
+    double samples = 0;
+    std::size_t count = 0;
+    while (count < rated.size() && spent < budget && samples < most_samples) {
+        spent += rated[count].cost;
+        samples += rated[count].samples;
+        ++count;
+    }
+    rated.resize(count);
+}
+
+void MomentPlan::find(Mirror const& mirror, RegionGrid const& regions, MomentBudget const& budget,
                       std::vector<RatedPatch>& rated) {
-    FRAMELET_CHECK(mirror.viewport() == field.plane().viewport());
+    FRAMELET_CHECK(mirror.viewport() == regions.plane().viewport());
     rated.clear();
-    find_gains(mirror, field, budget);
-    sum_nodes(field, budget);
+    find_gains(mirror, regions, budget);
+    sum_nodes(regions, budget);
     float low = least_price, high = most_price, price = least_price;
-    if (solve(field, budget, least_price) > budget.samples) {
+    if (solve(regions, budget, least_price) > budget.samples) {
         for (int step = 0; step < 18; ++step) {
             float const middle = std::sqrt(low * high);
-            (solve(field, budget, middle) > budget.samples ? low : high) = middle;
+            (solve(regions, budget, middle) > budget.samples ? low : high) = middle;
         }
         price = high;
-        if (!(solve(field, budget, high) > 0)) { // rather a little more than none at all
+        if (!(solve(regions, budget, high) > 0)) { // rather a little more than none at all
             price = low;
-            solve(field, budget, low);
+            solve(regions, budget, low);
         }
     }
     if (budget.limits.coarse_first && stale_ > 0.5f * wrong_) {
-        choose_horizon(field, budget, price);
+        choose_horizon(regions, budget, price);
     }
-    collect(field, 0, 0, rated);
+    collect(regions, 0, 0, rated);
 }
 
 /// Chooses among prices from `least` up the one whose patches gain most a second, where each plan takes `overhead`
 /// samples besides: what gains much for few samples shows before what those lack is refined.
-void MomentPlan::choose_horizon(RegionField const& field, MomentBudget const& budget, float least) {
+void MomentPlan::choose_horizon(RegionGrid const& regions, MomentBudget const& budget, float least) {
     constexpr int most_steps = 12;
     float best_rate = -1;
     float best = least;
     for (int step = 0; step <= most_steps; ++step) {
         float const price = std::ldexp(least, step);
-        auto const spent = static_cast<float>(solve(field, budget, price));
+        auto const spent = static_cast<float>(solve(regions, budget, price));
         float const rate = gain_ / (spent + static_cast<float>(budget.overhead));
         if (rate > best_rate) {
             best_rate = rate;
             best = price;
         }
     }
-    solve(field, budget, best);
+    solve(regions, budget, best);
 }
 
-void MomentPlan::find_gains(Mirror const& mirror, RegionField const& field, MomentBudget const& budget) {
-    leaves_.assign(field.size(), Leaf{});
-    std::span<std::uint32_t const> const regions = field.visible();
-    tbb::parallel_for(std::size_t{0}, regions.size(), [&](std::size_t i) { add_detail(mirror, field, regions[i]); });
+void MomentPlan::find_gains(Mirror const& mirror, RegionGrid const& regions, MomentBudget const& budget) {
+    leaves_.assign(regions.size(), Leaf{});
+    std::span<std::uint32_t const> const visible = regions.visible();
+    tbb::parallel_for(std::size_t{0}, visible.size(), [&](std::size_t i) { add_detail(mirror, regions, visible[i]); });
     float detail = 0, shown = 0;
-    for (std::uint32_t const index : regions) {
+    for (std::uint32_t const index : visible) {
         detail += leaves_[index].detail;
         shown += leaves_[index].shown;
     }
     mean_detail_ = shown > 0 ? detail / shown : unknown_detail;
-    tbb::parallel_for(std::size_t{0}, regions.size(),
-                      [&](std::size_t i) { add_gains(mirror, field, regions[i], budget); });
+    tbb::parallel_for(std::size_t{0}, visible.size(),
+                      [&](std::size_t i) { add_gains(mirror, regions, visible[i], budget); });
     stale_ = wrong_ = 0;
-    for (std::uint32_t const index : regions) {
+    for (std::uint32_t const index : visible) {
         stale_ += leaves_[index].stale;
         wrong_ += leaves_[index].wrong;
     }
 }
 
 /// Sums up the detail that shows in one region.
-void MomentPlan::add_detail(Mirror const& mirror, RegionField const& field, std::uint32_t index) {
+void MomentPlan::add_detail(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index) {
     Leaf& leaf = leaves_[index];
-    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float) {
+    for_each_cell(mirror, regions.rect_of(index), [&](Cell const& cell, float) {
         leaf.detail += cell.is_shown() ? cell.detail : 0;
         leaf.shown += cell.is_shown() ? 1.0f : 0.0f;
     });
 }
 
 /// Finds what each choice gains and costs in one region.
-void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::uint32_t index,
+void MomentPlan::add_gains(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index,
                            MomentBudget const& budget) {
-    Region const& region = field[index];
+    Region const& region = regions[index];
     Leaf& leaf = leaves_[index];
     // The viewer has what is on its way, or has been rendered of this moment, whatever the mirror makes of it.
     int had = region.taken.level;
     if (region.rendered >= budget.moment_begun) {
-        had = std::max(had, region.level + (region.supersampled ? 1 : 0));
+        had = std::max(had, shown_level(region.level, region.supersampled));
     }
     BiasWeights const weights(budget.bias);
     float const hole = std::max(weights.time, weights.space) * hole_error; // it is missing in space as in time
     float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
-    for_each_cell(mirror, field.rect_of(index), [&](Cell const& cell, float pixels) {
+    for_each_cell(mirror, regions.rect_of(index), [&](Cell const& cell, float pixels) {
         // New samples show although they are worse, or only where they are better, whatever the old ones show.
-        bool const gives_way = cell.is_shown() && mirror.gives_way(cell);
+        bool const gives_way = cell.is_shown() && (budget.rests || mirror.gives_way(cell));
         float const least = gives_way ? -weights.space * most_error : 0.0f;
         float const too_coarse = gives_way || !cell.is_shown() ? INFINITY : worn_of_step(cell.worn).second;
         float covered = cell.is_wrong ? 0 : cell.covered_share() * pixels;
-        float const detail = counted_detail(cell.is_shown() ? cell.detail : hidden_detail, mean_detail_);
+        float const own_detail = cell.is_shown() ? cell.detail : hidden_detail;
+        float const detail = budget.rests ? own_detail : counted_detail(own_detail, mean_detail_);
         float worn = cell.is_shown() ? cell.worn : INFINITY;
         worn += cell.is_shown() && mirror.camera_stands() && mirror.is_moved(cell) ? interpolated_wear : 0;
         float stale = cell.is_outdated ? std::max(cell.stale, outdated_error) : cell.stale;
-        bool const stands = stays(mirror, cell);
+        if (budget.rests && cell.is_shown() && has_moved(mirror, cell)) {
+            stale = std::max(stale, moved_doubt);
+        }
+        bool const stands = budget.rests || stays(mirror, cell);
         if (stands && worn <= finest_shown_spacing) {
             worn = std::min(worn, cell.spacing);
         }
@@ -236,27 +258,28 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionField const& field, std::
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;
     leaf.wrong = wrong_sum;
-    for (int level = field.least_level(); level < sampling_levels; ++level) {
+    LevelCosts const bits = budget.mean_bits > 0 ? coded_bits(hidden_detail) : LevelCosts{};
+    for (int level = regions.least_level(); level < sampling_levels; ++level) {
         auto const l = static_cast<std::size_t>(level);
-        float const factor = budget.costs.empty() ? 1.0f : budget.costs[index][l];
-        leaf.cost[l] = samples_per_pixel(level) * field.pixels_of(index) * factor;
+        float const factor = budget.mean_bits > 0 ? bits[l] / budget.mean_bits : 1.0f;
+        leaf.cost[l] = samples_per_pixel(level) * regions.pixels_of(index) * factor;
     }
     // Rays are cheaper than samples as far as the link leaves time for them.
     leaf.cost[supersampled] = leaf.cost[pixel_level] * std::max(1.0f, four_rays / budget.rays);
 }
 
 /// Sums up gains and costs of tiles that are larger than a region.
-void MomentPlan::sum_nodes(RegionField const& field, MomentBudget const& budget) {
-    nodes_.resize(static_cast<std::size_t>(field.depth()));
-    for (int depth = 0; depth < field.depth(); ++depth) {
+void MomentPlan::sum_nodes(RegionGrid const& regions, MomentBudget const& budget) {
+    nodes_.resize(static_cast<std::size_t>(regions.depth()));
+    for (int depth = 0; depth < regions.depth(); ++depth) {
         std::vector<Node>& nodes = nodes_[static_cast<std::size_t>(depth)];
         nodes.assign(std::size_t{1} << (2 * depth), Node{});
-        int const level = field.level_of(depth);
-        if (level < std::max(field.least_level(), budget.limits.least_level) || level > budget.limits.most_level) {
+        int const level = regions.level_of(depth);
+        if (level < std::max(regions.least_level(), budget.limits.least_level) || level > budget.limits.most_level) {
             continue;
         }
-        int const shift = 2 * (field.depth() - depth);
-        for (std::uint32_t const index : field.visible()) {
+        int const shift = 2 * (regions.depth() - depth);
+        for (std::uint32_t const index : regions.visible()) {
             Leaf const& leaf = leaves_[index];
             Node& node = nodes[index >> shift];
             node.gain += leaf.gain[static_cast<std::size_t>(level)];
@@ -266,9 +289,9 @@ void MomentPlan::sum_nodes(RegionField const& field, MomentBudget const& budget)
 }
 
 /// Chooses what is best for the price; returns what it costs.
-double MomentPlan::solve(RegionField const& field, MomentBudget const& budget, float price) {
-    int const first = std::max(field.level_of(field.depth()), budget.limits.least_level);
-    auto const deepest = static_cast<std::size_t>(field.depth());
+double MomentPlan::solve(RegionGrid const& regions, MomentBudget const& budget, float price) {
+    int const first = std::max(regions.level_of(regions.depth()), budget.limits.least_level);
+    auto const deepest = static_cast<std::size_t>(regions.depth());
     for (std::vector<Node>& nodes : nodes_) {
         for (Node& node : nodes) {
             node.best = node.spent = 0;
@@ -276,7 +299,7 @@ double MomentPlan::solve(RegionField const& field, MomentBudget const& budget, f
     }
     double all = 0;
     gain_ = 0;
-    for (std::uint32_t const index : field.visible()) {
+    for (std::uint32_t const index : regions.visible()) {
         Leaf& leaf = leaves_[index];
         leaf.choice = no_choice;
         float best = 0;
@@ -323,7 +346,7 @@ double MomentPlan::solve(RegionField const& field, MomentBudget const& budget, f
     return all;
 }
 
-void MomentPlan::collect(RegionField const& field, int depth, std::uint32_t index,
+void MomentPlan::collect(RegionGrid const& regions, int depth, std::uint32_t index,
                          std::vector<RatedPatch>& rated) const {
     Tile const tile{(1u << (2 * depth)) + index};
     auto const rate = [&](int tile_depth, float gain, float cost, int rays_per_sample) {
@@ -331,12 +354,13 @@ void MomentPlan::collect(RegionField const& field, int depth, std::uint32_t inde
         rated.push_back({patch, framelet_samples * tile_count(patch) * rays_per_sample, static_cast<double>(cost),
                          static_cast<double>(gain) / static_cast<double>(cost), rays_per_sample});
     };
-    if (depth == field.depth()) {
+    if (depth == regions.depth()) {
         Leaf const& leaf = leaves_[index];
         if (leaf.choice != no_choice) {
             bool const means = leaf.choice == supersampled;
             int const level = means ? pixel_level : static_cast<int>(leaf.choice);
-            rate(field.depth_of(level), leaf.gain[leaf.choice], leaf.cost[leaf.choice], means ? four_rays : single_ray);
+            rate(regions.depth_of(level), leaf.gain[leaf.choice], leaf.cost[leaf.choice],
+                 means ? four_rays : single_ray);
         }
         return;
     }
@@ -345,7 +369,7 @@ void MomentPlan::collect(RegionField const& field, int depth, std::uint32_t inde
         rate(depth, node.gain, node.cost, single_ray);
     } else if (node.best > 0) {
         for (std::uint32_t child = 0; child < 4; ++child) {
-            collect(field, depth + 1, 4 * index + child, rated);
+            collect(regions, depth + 1, 4 * index + child, rated);
         }
     }
 }

@@ -34,7 +34,7 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     Viewport const viewport = mirror_.viewport();
     looked_ = begun;
     ++looks_taken_;
-    mirror_.look(view_of(moment), *moment.motions);
+    mirror_.look(view_of(moment), *moment.motions, moment.moves_samples);
     MomentChecks checks;
     if (visibility_samples > 0) {
         checks.visibility = cell_grid(
@@ -49,9 +49,9 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     return checks;
 }
 
-void MomentRefresh::plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated) {
+void MomentRefresh::plan(RegionGrid const& regions, MomentBudget const& budget, std::vector<RatedPatch>& rated) {
     is_checked_ = false;
-    plan_.find(mirror_, field, budget, rated);
+    plan_.find(mirror_, regions, budget, rated);
 }
 
 void MomentRefresh::note_visibility(RenderedMoment const& moment, RayGrid const& grid,
@@ -82,7 +82,10 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
             cut_pieces(rendered[i], framelets[i], *shape, plane, moment.scene_time, batch, pieces_);
             std::span<Piece> const pieces = std::span(pieces_).subspan(first);
             bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
-            std::ranges::for_each(pieces, [&](Piece& piece) { piece.rests = rests; });
+            std::ranges::for_each(pieces, [&](Piece& piece) {
+                piece.rests = rests;
+                piece.is_outlier = piece.is_outlier && moment.moves_samples; // else all are alike
+            });
             bool const has_outline = shape->layer_count > 1 || !shape->outliers.empty();
             shape->decorrelation = expects_change ? expect_decorrelation(pieces, mirror_.camera_stands(), has_outline)
                                                   : DecorrelationCode{0};

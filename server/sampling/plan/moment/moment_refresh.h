@@ -1,5 +1,5 @@
-// Finds what of a moment is worth rendering for a viewer that moves what it holds. In: moments, what was rendered and
-// sent of them, what the viewer evicted. Out: patches, and where to check what the viewer shows.
+// Finds what of a moment is worth rendering for a viewer. In: moments, what was rendered and sent of them, what the
+// viewer evicted. Out: patches, and where to check what the viewer shows.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,6 @@
 
 #include "server/render/probe.h"
 #include "server/render/ray_grid.h"
-#include "server/sampling/field/meeting_bodies.h"
 #include "server/sampling/mirror/mirror.h"
 #include "server/sampling/plan/moment/moment_plan.h"
 
@@ -18,6 +17,14 @@ namespace framelet {
 /// Costs, in samples, of a visibility ray, which is not shaded, and of a probe, which is traced together with none of
 /// its neighbours.
 inline constexpr double visibility_cost = 0.25, probe_cost = 2;
+
+/// The moment at which framelets are rendered, and how its viewer shows another one.
+struct RenderedMoment {
+    ViewRays rays{};
+    SceneTime scene_time = 0;
+    BodyMotions const* motions = nullptr; ///< of bodies, as the viewer knows them or would; not null
+    bool moves_samples = true; ///< the viewer moves what it holds, from and to perspective cameras
+};
 
 /// Positions at which what a moment really shows is compared with what the viewer would show of it.
 struct MomentChecks {
@@ -44,7 +51,7 @@ public:
     MomentChecks look(RenderedMoment const& moment, double begun, double visibility_samples, double probe_samples,
                       std::vector<Probe>& probes);
     /// Replaces `rated` by where what the viewer holds shows the moment worst: see `MomentPlan`.
-    void plan(RegionField const& field, MomentBudget const& budget, std::vector<RatedPatch>& rated);
+    void plan(RegionGrid const& regions, MomentBudget const& budget, std::vector<RatedPatch>& rated);
 
     /// Takes in what checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by
     /// row (< 0: not known), or luma of the probes, in order. Ignored where another moment is looked at by now.

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "server/sampling/model/haar.h"
-#include "tests/sampling/haar_inverse.h"
+#include "tests/evaluation/methods/response/haar.h"
+#include "tests/evaluation/methods/response/haar_inverse.h"
 
 namespace framelet {
 namespace {

@@ -1,4 +1,4 @@
-#include "server/sampling/model/haar.h"
+#include "tests/evaluation/methods/response/haar.h"
 
 #include <algorithm>
 #include <bit>

@@ -1,11 +1,11 @@
-#include "server/sampling/model/haar.h"
+#include "tests/evaluation/methods/response/haar.h"
 
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "tests/sampling/haar_inverse.h"
+#include "tests/evaluation/methods/response/haar_inverse.h"
 
 namespace framelet {
 namespace {
