@@ -61,7 +61,8 @@ public:
     /// Brings `picture` up to date with what has come, and with the newest camera and the present scene time: what is
     /// held is moved to where it belongs now (`ViewerSettings::reproject`). Call it for every display frame. True when
     /// it changed. `changed` gets the rectangles that may differ. While nothing has come for a new viewport, the
-    /// picture stays as it is, in its old size. A picture that is not the one of the last call is written as a whole.
+    /// picture stays as it is, in its old size. A picture that lies elsewhere than that of the last call, or has
+    /// another size, is written as a whole: a new one has no size at first, since it might lie where the last one lay.
     /// `shown_at`: the time when it will be seen, of which it is to be; in the past: as soon as it is ready. Throws
     /// std::bad_alloc where memory is missing for it: nothing more is to be asked of the core then. With a canvas what
     /// is moved is painted there, in the calling thread, and `picture` has its size alone: `is_on_canvas` says so.

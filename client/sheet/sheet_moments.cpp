@@ -19,7 +19,7 @@ Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport,
     if (sets_clock) {
         core.request_clock({ClockRequest::time | ClockRequest::playing, {moment.time, false, 1}});
     }
-    Picture out; // of no size, so that all of it is written: one of the right size might lie where the last one lay
+    Picture out; // of no size, so that all of it is written
     std::vector<PixelRect> changed;
     for (Clock::time_point const end = Clock::now() + patience; Clock::now() < end;) {
         core.set_view(moment.camera, viewport, moment.scene_camera);

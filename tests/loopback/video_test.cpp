@@ -14,6 +14,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "client/core/picture/picture_maker.h"
 #include "common/files/image_io.h"
 #include "tests/loopback/process.h"
 
@@ -173,6 +174,23 @@ TEST(Sheet, HasTheMomentsAsTheyWereShownAndAsTheyAre) {
     Process again(FRAMELET_CLIENT, {server.address(), "--size", "96x64", "--duration", "1", "--json"});
     ASSERT_EQ(again.wait(patience), 0) << again.errors();
     EXPECT_GT(nlohmann::json::parse(again.output()).at("pictures").get<int>(), 2) << "the clock goes on";
+}
+
+/// Of what stands nothing comes for a still: the viewer has it.
+TEST(Sheet, StillsAreWholeWhereNothingIsMoved) {
+    ServerProcess server(FRAMELET_SOURCE_DIR "/scenes/vehicle_fixed.glb");
+    TemporaryFolder folder;
+    std::string const file = (folder.path() / "sheet.png").string();
+    Process client(FRAMELET_CLIENT,
+                   {server.address(), "--size", "640x360", "--duration", "4", "--no-reprojection", "--sheet", file});
+    ASSERT_EQ(client.wait(patience), 0) << client.errors();
+    Picture const sheet = read_picture(file);
+    Picture const bare = bare_picture({1, 1});
+    std::size_t missing = 0;
+    for (std::size_t i = 4u * 640 * 368; i < sheet.rgba.size(); i += 4) { // below the moments
+        missing += std::equal(bare.rgba.begin(), bare.rgba.end(), sheet.rgba.begin() + static_cast<std::ptrdiff_t>(i));
+    }
+    EXPECT_EQ(missing, 0u);
 }
 
 TEST(Sheet, NeedsTheClock) {

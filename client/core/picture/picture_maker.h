@@ -61,9 +61,9 @@ public:
     void take_evicted(std::vector<SentTile>& framelets) { pool_.take_evicted(framelets); }
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
-    /// is not the one of the last call, or has another size, is written as a whole. Nothing happens while nothing is
-    /// held. With a canvas what is moved is painted there, unless the scene is smoothed: `is_on_canvas` says so. Throws
-    /// what the canvas throws.
+    /// lies elsewhere than that of the last call, or has another size, is written as a whole. Nothing happens while
+    /// nothing is held. With a canvas what is moved is painted there, unless the scene is smoothed: `is_on_canvas` says
+    /// so. Throws what the canvas throws.
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
               BlockCanvas* canvas = nullptr);
     /// True when the last picture is not in memory but on the canvas.

@@ -148,7 +148,7 @@ std::optional<Vec2> pixel_of(ViewRays const& rays, Vec3 point) {
 /// Leaves one piece where it was rendered, as a viewer does that moves nothing, and finds how far what it shows has
 /// gone. `stands`: the camera of both pictures is the same.
 ReprojectedPiece leave(Piece const& piece, PieceReprojection const& reprojection, bool stands) {
-    constexpr float least_inverse_depth = 1e-6f; // 1 / metres; what is farther stands
+    constexpr float least_inverse_depth = 1e-6f; // 1 / metres; what is farther is taken to be there
     SceneTime const to = reprojection.display.scene_time;
     auto const age = static_cast<float>(to - piece.scene_time);
     Motion const motion =

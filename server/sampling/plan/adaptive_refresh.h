@@ -55,10 +55,9 @@ public:
     // These let others look at what it decides.
     Mirror const& mirror() const { return moments_.mirror(); }
     RegionGrid const& regions() const { return regions_; }
-    /// The cycle that was planned last: how many there have been, the patches to render, the samples that it has time
-    /// for (by what they cost), and its length.
+    /// The cycle that was planned last: how many there have been, the samples that it has time for (by what they cost),
+    /// and its length.
     std::uint64_t cycle_count() const { return cycle_count_; }
-    std::vector<Patch> const& cycle() const { return cycle_; }
     double cycle_budget() const { return cycle_budget_; }
     double cycle_seconds() const { return cycle_seconds_; }
 

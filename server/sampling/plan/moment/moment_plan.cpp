@@ -66,6 +66,14 @@ constexpr ChoiceFigures shown_spacings = [] {
     return spacings;
 }();
 
+/// What errors count as the viewer wishes: those of what has passed, those of what is missing between samples. `bias`:
+/// -1 (spatial fidelity) .. 1 (temporal); 4 to its power, and the inverse.
+struct BiasWeights {
+    explicit BiasWeights(float bias) : time(bias == 0 ? 1 : std::exp2(2 * bias)), space(1 / time) {}
+
+    float time, space;
+};
+
 /// True where means of rays show; of samples finer than pixels too the viewer moves the means.
 bool shows_means(Cell const& cell, bool stands) {
     return cell.is_supersampled || (!stands && cell.spacing < 1);

@@ -8,7 +8,6 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <vector>
 
 #include "common/simd/lanes.h"
@@ -34,14 +33,6 @@ struct ResponseLimits {
     bool plans_together = true; ///< the samples of several cycles are planned together; else each cycle on its own
     bool coarse_first = true; ///< where much is stale, all of it is rendered coarsely first
     int most_rays = four_rays; ///< most rays of a sample
-};
-
-/// What errors count as the viewer wishes: those of what has passed, those of what is missing between samples. `bias`:
-/// -1 (spatial fidelity) .. 1 (temporal); 4 to its power, and the inverse.
-struct BiasWeights {
-    explicit BiasWeights(float bias) : time(bias == 0 ? 1 : std::exp2(2 * bias)), space(1 / time) {}
-
-    float time, space;
 };
 
 /// A patch that is worth rendering.
