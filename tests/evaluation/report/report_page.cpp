@@ -188,9 +188,9 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
     }
     if (!figures.clocks.empty()) {
         page += "\n### The same sessions on the virtual clock\n\n`framelet` with a core for the server and one for the "
-                "viewer: PSNR by the wall clock, how much more the virtual clock says, its bytes and pictures over the "
-                "wall clock's; how busy the server's core was by the wall clock, and without reprojection. Far ones in "
-                "bold.\n\n";
+                "viewer. PSNR is by the wall clock; then comes how much more the virtual clock says, and its bytes and "
+                "pictures over the wall clock's. Busy is how much the server's core was by the wall clock, and without "
+                "reprojection. Far ones in bold.\n\n";
         page += clock_table(figures.clocks);
     }
     page +=
