@@ -50,9 +50,15 @@ struct Planner {
     }
     void render(MirrorView const& view, Look const& look) {
         std::vector<Piece> pieces;
-        for (Tile const tile : tiles()) {
-            RenderedTile const one = render_tile(plane, tile, look);
-            cut_pieces(one, plane, 0, pieces);
+        std::vector<Tile> tiles;
+        for (RatedPatch const& entry : rated) {
+            tiles.clear();
+            append_tiles(plane, entry.patch, tiles);
+            for (Tile const tile : tiles) {
+                RenderedTile one = render_tile(plane, tile, look);
+                one.rendered.is_supersampled = entry.rays_per_sample == four_rays;
+                cut_pieces(one, plane, 0, pieces);
+            }
         }
         mirror.add(view.rays, no_motions, pieces);
     }
@@ -139,7 +145,8 @@ TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
 
 TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
     Planner planner;
-    std::set<Tile> rendered;
+    std::set<std::pair<Tile, int>> rendered; // and rays a sample
+    std::vector<Tile> tiles;
     constexpr double share = 0.3;
     constexpr double most_rounds = 1.5 * (1 + 4 + 16) / share; // of every level all
     int rounds = 0;
@@ -149,8 +156,13 @@ TEST(MomentPlan, NothingIsPlannedTwiceAndInTheEndNothing) {
         if (planner.rated.empty()) {
             break;
         }
-        for (Tile const tile : planner.tiles()) {
-            EXPECT_TRUE(rendered.insert(tile).second);
+        for (RatedPatch const& entry : planner.rated) {
+            tiles.clear();
+            append_tiles(plane, entry.patch, tiles);
+            for (Tile const tile : tiles) {
+                EXPECT_TRUE(rendered.insert({tile, entry.rays_per_sample}).second);
+                EXPECT_NE(plane.max_depth() - tile.depth(), 1) << "half a pixel apart: means say as much";
+            }
         }
         planner.render(view_at(0), half_busy);
     }

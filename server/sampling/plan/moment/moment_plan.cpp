@@ -27,6 +27,8 @@ constexpr float interpolated_wear = 1;
 constexpr float least_price = 5e-6f, most_price = 1e2f;
 
 constexpr std::size_t supersampled = MomentPlan::supersampled;
+/// Samples half a pixel apart. While anything moves, means of four rays show as much for a quarter of the bytes.
+constexpr int halved_level = pixel_level + 1;
 using ChoiceFigures = MomentPlan::ChoiceFigures;
 
 /// Error of samples `s` pixels apart, as a multiple of the detail: what they miss, and what aliases.
@@ -299,6 +301,8 @@ void MomentPlan::sum_nodes(RegionGrid const& regions, MomentBudget const& budget
 /// Chooses what is best for the price; returns what it costs.
 double MomentPlan::solve(RegionGrid const& regions, MomentBudget const& budget, float price) {
     int const first = std::max(regions.level_of(regions.depth()), budget.limits.least_level);
+    bool const offers_means =
+        budget.limits.most_rays >= four_rays && first <= pixel_level && pixel_level <= budget.limits.most_level;
     auto const deepest = static_cast<std::size_t>(regions.depth());
     for (std::vector<Node>& nodes : nodes_) {
         for (Node& node : nodes) {
@@ -321,9 +325,11 @@ double MomentPlan::solve(RegionGrid const& regions, MomentBudget const& budget, 
             }
         };
         for (int level = first; level <= budget.limits.most_level; ++level) {
-            rate(static_cast<std::size_t>(level));
+            if (budget.rests || !offers_means || level != halved_level) {
+                rate(static_cast<std::size_t>(level));
+            }
         }
-        if (budget.limits.most_rays >= four_rays && first <= pixel_level && pixel_level <= budget.limits.most_level) {
+        if (offers_means) {
             rate(supersampled);
         }
         if (deepest > 0) {
