@@ -10,12 +10,9 @@
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/comparison.h"
-#include "tests/evaluation/correspondence/correspondence.h"
-#include "tests/evaluation/estimators/estimator_verbs.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/pauses.h"
 #include "tests/evaluation/report/report_page.h"
-#include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
 #include "tests/evaluation/stillness.h"
 #include "tests/evaluation/table.h"
@@ -97,12 +94,12 @@ void choose_runs(VerbOptions& options) {
         fall_back(report.machines, {2, 10});
         fall_back(report.links, {5, 20});
     }
-    fall_back(study.methods, {"framed+h264", "framed+warp", "interruptible", "tsar", "afr", "framelet-unwarped",
-                              "framelet", "oracle"});
+    fall_back(study.methods,
+              {"framed+h264", "framed+warp", "interruptible", "tsar", "afr", "framelet-unwarped", "framelet"});
     fall_back(report.machines, {0.5, 1, 2, 5, 10, 20, 60});
     fall_back(report.links, {0.5, 2, 5, 20, 80});
     std::ranges::copy_if(study.methods, std::back_inserter(report.linked_methods), [](std::string const& method) {
-        return method != "oracle" && method != "tsar" && method != "afr"; // these methods do not adapt to a link
+        return method != "tsar" && method != "afr"; // these methods do not adapt to a link
     });
 }
 
@@ -229,23 +226,6 @@ std::span<Verb const> verbs() {
          .scenes = {"vehicle_chase", "teleport", "windmill", "walker", "flicker", "fan"},
          .usual = {.viewport = {160, 90}},
          .quick = {.viewport = {96, 54}}},
-        {.name = "sensitivity",
-         .question = "How tsar answers to steeper and flatter templates of its error estimate",
-         .answer = [](VerbOptions& o) { return measure_sensitivity(o.study); },
-         .scenes = chase},
-        {.name = "estimators",
-         .question = "Cost of error estimators against their agreement with the ideal density",
-         .answer = [](VerbOptions& o) { return compare_estimators(o.study, o.observation, o.quick); },
-         .scenes = {"vehicle_crossing", "windmill", "vehicle_fixed", "vehicle_chase", "vehicle_flyby",
-                    "vehicle_approach", "globe", "flicker", "foliage", "stop"},
-         .add_options = add_estimator_options},
-        {.name = "correspondence",
-         .question = "How far off the viewer shows what it moves",
-         .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.quick ? 1 : 3); },
-         .scenes = {"globe", "windmill", "vehicle_approach", "vehicle_chase", "vehicle_crossing", "vehicle_fixed",
-                    "vehicle_flyby"},
-         .usual = screen,
-         .quick = half_screen},
         {.name = "calibrate",
          .question = "What every stage costs on this machine",
          .answer = answer_calibrate,
