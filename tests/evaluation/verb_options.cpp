@@ -153,6 +153,11 @@ void add_ablation_options(CLI::App& verb, VerbOptions& options) {
         ->check(CLI::IsMember(ablation_parts()));
 }
 
+void add_gate_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--figures", options.gate_file, "The committed figures")->capture_default_str();
+    verb.add_flag("--write", options.write_gate, "Write the figures anew");
+}
+
 void add_report_options(CLI::App& verb, VerbOptions& options) {
     ReportOptions& report = options.report;
     verb.add_option("--folder", report.folder, "Keeps each run's figures: what is there is not run again")

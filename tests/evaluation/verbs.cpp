@@ -10,6 +10,7 @@
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/comparison.h"
+#include "tests/evaluation/gate.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/pauses.h"
 #include "tests/evaluation/report/report_page.h"
@@ -186,6 +187,13 @@ std::span<Verb const> verbs() {
          .answer = answer_compare,
          .scenes = kinds_of_motion,
          .add_options = add_compare_options},
+        {.name = "gate",
+         .question = "Whether framelet errs more than the committed figures say (exit code 1: it does)",
+         .answer = [](VerbOptions& o) { return measure_gate(o.study, o.gate_file, o.write_gate); },
+         .scenes = {"vehicle_chase", "walker", "dim"},
+         .usual = {.viewport = {160, 96}, .seconds = 1, .rate = 20},
+         .quick = {.viewport = {160, 96}, .seconds = 1, .rate = 20},
+         .add_options = add_gate_options},
         {.name = "report",
          .question = "All of docs/RESULTS.md: speed against accuracy, scene by scene, the real programs (hours)",
          .answer = answer_report,
