@@ -10,9 +10,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "server/stream/moment_choice.h"
 #include "tests/evaluation/figure_table.h"
 #include "tests/evaluation/measures/measures.h"
+#include "tests/evaluation/phases.h"
 
 namespace framelet::bench {
 namespace {
@@ -20,13 +20,6 @@ namespace {
 using nlohmann::json;
 
 LinkParameters const usual_link{.bits_per_second = 5e6, .delay_seconds = 0.02};
-
-/// Number of phases at which a run is made. Moments change at multiples of their length of the server's clock, and
-/// what is rendered when depends on the phase of these: a run is made at several phases, and the mean of their errors
-/// is taken.
-constexpr std::size_t phases = 4;
-/// Seconds from phase to phase: an eighth of a second spreads them evenly within moments of 0.1, 0.2 and 0.4 s alike.
-constexpr double phase_step = (least_moment_seconds + most_moment_seconds) / phases;
 
 struct Part {
     char const* name;

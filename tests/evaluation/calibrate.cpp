@@ -240,12 +240,10 @@ void calibrate_density_response(ImagePlane const& plane, std::vector<Framelet> c
     for (RateError& error : errors) {
         error = {static_cast<float>(random() % 256) / 128 - 1, static_cast<float>(random() % 256) / 128 - 1};
     }
-    ResponseParameters const parameters{{{1.0 / 64, 1}, {16, 80}}, 0.1, 10, 0, Transport::fill_smaller};
-    Surplus surplus;
+    ResponseParameters const parameters{{{1.0 / 64, 1}, {16, 80}}, 0.1, 10, 0};
     ResponseScratch scratch;
     double const count = static_cast<double>(elements.size());
-    costs.respond_element =
-        cost(rounds, count, [&] { respond(density, elements, errors, parameters, surplus, scratch); });
+    costs.respond_element = cost(rounds, count, [&] { respond(density, elements, errors, parameters, scratch); });
     costs.tiling_element =
         cost(rounds, count, [&] { make_density_tiling(plane, density.space, density.depth, framelet_samples); });
 }

@@ -17,7 +17,7 @@ struct KnownMethod {
     bool margin = false;
 };
 
-constexpr std::array<KnownMethod, 13> known_methods{{
+constexpr std::array<KnownMethod, 9> known_methods{{
     {"framed", make_framed, false, true},
     {"framed+h264", make_framed_h264, false, true},
     {"framed+warp", make_framed_warp, false, true, true},
@@ -25,12 +25,8 @@ constexpr std::array<KnownMethod, 13> known_methods{{
     {"frameless", make_frameless},
     {"afr", make_afr},
     {"tsar", make_tsar, true},
-    {"tsar-e", make_tsar_e, true},
-    {"tsar-fill", make_tsar_fill, true},
-    {"tsar-surplus", make_tsar_surplus, true},
     {"framelet-unwarped", make_framelet_unwarped, true},
     {"framelet", make_framelet, true},
-    {"oracle", make_oracle, false, true},
 }};
 
 KnownMethod const& find_method(std::string_view name) {

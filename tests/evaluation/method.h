@@ -67,7 +67,7 @@ struct FrameletParts {
 struct RivalParts {
     bool accumulate = true; ///< while nothing moves, further samples make the picture better and better
     bool ahead = true; ///< frames are rendered for the time at which they will be shown
-    /// Pixels from sample to sample while something moves (of the oracle: the most): 1, 2 or 4; 0: the one of least
+    /// Pixels from sample to sample while something moves: 1, 2 or 4; 0: the one of least
     /// error is chosen.
     int spacing = 0;
     /// Margin around the viewport, as a share of its sides, where the viewer moves frames; < 0: the one of least error

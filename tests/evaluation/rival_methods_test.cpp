@@ -254,16 +254,5 @@ TEST(Interruptible, GoesFromCoarseToFineAndBeginsAnewOnlyAtTheBeginning) {
     EXPECT_GT(begun, 10) << "everything moves";
 }
 
-TEST_F(Rivals, NoChoiceOfFramesIsBetterThanTheOracles) {
-    for (std::string const name : {"vehicle_fixed", "teleport"}) {
-        auto const scene = load_bench_scene(bundled(name));
-        RunParameters parameters = small_run({96, 64}, 20);
-        MethodRecord const warped = record(*scene, "framed+warp", parameters);
-        MethodRecord const oracle = record(*scene, "oracle", parameters);
-        EXPECT_LE(oracle.run.samples, 1.05 * static_cast<double>(warped.run.samples) + 1) << name;
-        EXPECT_LE(mean_mse(oracle), 1.05 * mean_mse(warped)) << name;
-    }
-}
-
 } // namespace
 } // namespace framelet::bench

@@ -126,7 +126,7 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
 void add_study_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--json", options.json_file, "Write the figures to this file as well");
     verb.add_flag("--quick", options.quick, "Smaller pictures, less time");
-    verb.add_option("--charts", options.study.charts, "Draw charts into this folder (compare, sensitivity)");
+    verb.add_option("--charts", options.study.charts, "Draw charts into this folder (compare, pauses)");
     verb.add_option("--costs", options.costs_file, "Table of stage costs (calibrate writes one)")
         ->capture_default_str();
     add_scene_options(verb, options);
@@ -153,13 +153,9 @@ void add_ablation_options(CLI::App& verb, VerbOptions& options) {
         ->check(CLI::IsMember(ablation_parts()));
 }
 
-void add_estimator_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--windows", options.observation.windows, "Times of each scene")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
-    verb.add_option("--places", options.observation.places, "Places at each time")
-        ->check(CLI::Range(1, 1000))
-        ->capture_default_str();
+void add_gate_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--figures", options.gate_file, "The committed figures")->capture_default_str();
+    verb.add_flag("--write", options.write_gate, "Write the figures anew");
 }
 
 void add_report_options(CLI::App& verb, VerbOptions& options) {

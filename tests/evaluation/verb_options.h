@@ -9,7 +9,6 @@
 #include <thread>
 #include <vector>
 
-#include "tests/evaluation/estimators/observations.h"
 #include "tests/evaluation/report/report_runs.h"
 #include "tests/evaluation/study.h"
 
@@ -46,11 +45,12 @@ struct VerbOptions {
     // The options below belong to one verb each.
     std::vector<int> table_runs;
     std::vector<std::string> without; ///< parts that the ablation leaves out
-    ObservationOptions observation; ///< for `estimators`
     ReportOptions report;
     std::vector<std::string> live_scenes, clock_scenes; ///< files or names, for the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
     bool without_live = false;
+    std::filesystem::path gate_file = source_folder / "tests/evaluation/gate.json";
+    bool write_gate = false;
 };
 
 /// The project's own scene files, in the order of their names.
@@ -77,7 +77,7 @@ void add_study_options(CLI::App& verb, VerbOptions& options);
 void add_compare_options(CLI::App& verb, VerbOptions& options);
 void add_ablation_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
-void add_estimator_options(CLI::App& verb, VerbOptions& options);
+void add_gate_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

@@ -11,11 +11,10 @@
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/comparison.h"
 #include "tests/evaluation/correspondence/correspondence.h"
-#include "tests/evaluation/estimators/estimator_verbs.h"
+#include "tests/evaluation/gate.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/pauses.h"
 #include "tests/evaluation/report/report_page.h"
-#include "tests/evaluation/sensitivity.h"
 #include "tests/evaluation/stability.h"
 #include "tests/evaluation/stillness.h"
 #include "tests/evaluation/table.h"
@@ -97,12 +96,12 @@ void choose_runs(VerbOptions& options) {
         fall_back(report.machines, {2, 10});
         fall_back(report.links, {5, 20});
     }
-    fall_back(study.methods, {"framed+h264", "framed+warp", "interruptible", "tsar", "afr", "framelet-unwarped",
-                              "framelet", "oracle"});
+    fall_back(study.methods,
+              {"framed+h264", "framed+warp", "interruptible", "tsar", "afr", "framelet-unwarped", "framelet"});
     fall_back(report.machines, {0.5, 1, 2, 5, 10, 20, 60});
     fall_back(report.links, {0.5, 2, 5, 20, 80});
     std::ranges::copy_if(study.methods, std::back_inserter(report.linked_methods), [](std::string const& method) {
-        return method != "oracle" && method != "tsar" && method != "afr"; // these methods do not adapt to a link
+        return method != "tsar" && method != "afr"; // these methods do not adapt to a link
     });
 }
 
@@ -189,6 +188,13 @@ std::span<Verb const> verbs() {
          .answer = answer_compare,
          .scenes = kinds_of_motion,
          .add_options = add_compare_options},
+        {.name = "gate",
+         .question = "Whether framelet errs more than the committed figures say (exit code 1: it does)",
+         .answer = [](VerbOptions& o) { return measure_gate(o.study, o.gate_file, o.write_gate); },
+         .scenes = {"vehicle_chase", "walker", "dim"},
+         .usual = {.viewport = {160, 96}, .seconds = 1, .rate = 20},
+         .quick = {.viewport = {160, 96}, .seconds = 1, .rate = 20},
+         .add_options = add_gate_options},
         {.name = "report",
          .question = "All of docs/RESULTS.md: speed against accuracy, scene by scene, the real programs (hours)",
          .answer = answer_report,
@@ -229,16 +235,6 @@ std::span<Verb const> verbs() {
          .scenes = {"vehicle_chase", "teleport", "windmill", "walker", "flicker", "fan"},
          .usual = {.viewport = {160, 90}},
          .quick = {.viewport = {96, 54}}},
-        {.name = "sensitivity",
-         .question = "How tsar answers to steeper and flatter templates of its error estimate",
-         .answer = [](VerbOptions& o) { return measure_sensitivity(o.study); },
-         .scenes = chase},
-        {.name = "estimators",
-         .question = "Cost of error estimators against their agreement with the ideal density",
-         .answer = [](VerbOptions& o) { return compare_estimators(o.study, o.observation, o.quick); },
-         .scenes = {"vehicle_crossing", "windmill", "vehicle_fixed", "vehicle_chase", "vehicle_flyby",
-                    "vehicle_approach", "globe", "flicker", "foliage", "stop"},
-         .add_options = add_estimator_options},
         {.name = "correspondence",
          .question = "How far off the viewer shows what it moves",
          .answer = [](VerbOptions& o) { return measure_correspondence(o.study, o.quick ? 1 : 3); },

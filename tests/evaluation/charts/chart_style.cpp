@@ -12,9 +12,7 @@ namespace {
 std::map<std::string, LineStyle> const methods{
     {"framed", {"#333333", 1, 5}},       {"interruptible", {"#e69f00", 1, 9}}, {"framed+h264", {"#0072b2", 1, 11}},
     {"framed+warp", {"#56b4e9", 1, 13}}, {"frameless", {"#cc79a7", 1, 4}},     {"afr", {"#009e73", 1, 8}},
-    {"tsar", {"#882255", 1, 10}},        {"tsar-e", {"#332288", 1, 6}},        {"tsar-fill", {"#cc6677", 1, 12}},
-    {"tsar-surplus", {"#117733", 1, 8}}, {"framelet", {"#d55e00", 1, 7, 3}},   {"framelet-unwarped", {"#ee9966", 2, 7}},
-    {"oracle", {"#999933", 2, 6}},
+    {"tsar", {"#882255", 1, 10}},        {"framelet", {"#d55e00", 1, 7, 3}},   {"framelet-unwarped", {"#ee9966", 2, 7}},
 };
 
 constexpr double tolerance = 1e-9; // relative tolerance for a mark that should stand on the end of its axis

@@ -109,7 +109,7 @@ TEST(Charts, BadInputIsRefused) {
 TEST(ChartStyle, EveryMethodHasItsOwnLook) {
     std::set<std::string> looks;
     for (char const* const name : {"framed", "framed+h264", "framed+warp", "interruptible", "frameless", "afr", "tsar",
-                                   "tsar-e", "tsar-fill", "tsar-surplus", "framelet-unwarped", "framelet", "oracle"}) {
+                                   "framelet-unwarped", "framelet"}) {
         EXPECT_TRUE(looks.insert(to_string(style_of(name))).second) << name;
     }
     EXPECT_TRUE(looks.insert(to_string(style_of("another"))).second);

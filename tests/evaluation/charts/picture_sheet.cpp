@@ -34,10 +34,8 @@ void check_sizes(std::span<Picture const> pictures) {
     }
 }
 
-} // namespace
-
-Picture picture_sheet(std::span<Picture const> pictures, int columns, int framed) {
-    check_sizes(pictures);
+/// Sheet of pictures of one size in rows of `columns`, white between them.
+Picture picture_sheet(std::span<Picture const> pictures, int columns) {
     int const width = pictures.front().width, height = pictures.front().height;
     int const gap = std::max(4, width / 64);
     int const rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
@@ -46,12 +44,6 @@ Picture picture_sheet(std::span<Picture const> pictures, int columns, int framed
     for (int i = 0; i < static_cast<int>(pictures.size()); ++i) {
         int const left = gap + i % columns * (width + gap);
         int const top = gap + i / columns * (height + gap);
-        int const frame = i == framed ? gap / 2 : 0;
-        for (int y = top - frame; y < top + height + frame; ++y) {
-            for (int x = left - frame; x < left + width + frame; ++x) {
-                std::fill_n(sheet.row(y) + static_cast<std::ptrdiff_t>(x) * 4, 3, std::uint8_t(0));
-            }
-        }
         for (int y = 0; y < height; ++y) {
             std::copy_n(pictures[static_cast<std::size_t>(i)].row(y), width * 4,
                         sheet.row(top + y) + static_cast<std::ptrdiff_t>(left) * 4);
@@ -59,6 +51,8 @@ Picture picture_sheet(std::span<Picture const> pictures, int columns, int framed
     }
     return sheet;
 }
+
+} // namespace
 
 Picture beside_reference(Picture const& reference, std::span<Picture const> shown) {
     std::vector<Picture> pictures{reference};

@@ -48,20 +48,9 @@ TEST(PictureSheet, PicturesStandInARowWithTheirErrorsBelow) {
     EXPECT_EQ(at(sheet, column_left(2) + 7, error_top + 2), 0);
 }
 
-TEST(PictureSheet, RowsAreFilledFromTheLeftAndOneHasAFrame) {
-    std::vector<Picture> const pictures{flat(width, height, 1), flat(width, height, 2), flat(width, height, 3)};
-    Picture const sheet = picture_sheet(pictures, 2, 2);
-    EXPECT_EQ(sheet.width, column_left(2));
-    EXPECT_EQ(at(sheet, column_left(1), gap), 2);
-    EXPECT_EQ(at(sheet, column_left(0), 2 * gap + height), 3);
-    EXPECT_EQ(at(sheet, column_left(0) - 1, 2 * gap + height), 0) << "the frame";
-    EXPECT_EQ(at(sheet, column_left(1), 2 * gap + height), 255) << "nothing is left for there";
-}
-
 TEST(PictureSheet, RefusesOtherSizesAndNoPicture) {
     EXPECT_THROW(beside_reference(flat(4, 4, 0), std::vector{flat(4, 5, 0)}), InputError);
     EXPECT_THROW(beside_reference(Picture(), {}), InputError);
-    EXPECT_THROW(picture_sheet({}, 2), InputError);
 }
 
 } // namespace

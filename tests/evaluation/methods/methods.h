@@ -14,9 +14,5 @@ std::unique_ptr<Method> make_afr(MethodSetup const& setup);
 std::unique_ptr<Method> make_framelet(MethodSetup const& setup);
 std::unique_ptr<Method> make_framelet_unwarped(MethodSetup const& setup);
 std::unique_ptr<Method> make_tsar(MethodSetup const& setup);
-std::unique_ptr<Method> make_tsar_e(MethodSetup const& setup);
-std::unique_ptr<Method> make_tsar_fill(MethodSetup const& setup);
-std::unique_ptr<Method> make_tsar_surplus(MethodSetup const& setup);
-std::unique_ptr<Method> make_oracle(MethodSetup const& setup);
 
 } // namespace framelet::bench

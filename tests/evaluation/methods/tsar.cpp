@@ -23,17 +23,4 @@ std::unique_ptr<Method> make_tsar(MethodSetup const& setup) {
     return std::make_unique<Tsar>(setup);
 }
 
-std::unique_ptr<Method> make_tsar_e(MethodSetup const& setup) {
-    return std::make_unique<Tsar>(setup, TsarParameters{.strategy = Transport::grow_smaller});
-}
-
-std::unique_ptr<Method> make_tsar_fill(MethodSetup const& setup) {
-    return std::make_unique<Tsar>(setup, TsarParameters{.strategy = Transport::fill_smaller});
-}
-
-std::unique_ptr<Method> make_tsar_surplus(MethodSetup const& setup) {
-    constexpr double most_saved = 0.1; // [Stephens 2011] names no size of the account
-    return std::make_unique<Tsar>(setup, TsarParameters{.most_saved = most_saved});
-}
-
 } // namespace framelet::bench

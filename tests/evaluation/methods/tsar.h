@@ -16,8 +16,6 @@ public:
     double mean_sample_time() const override { return viewer_.mean_scene_time(); }
     Window window() const override { return {16}; }
 
-    TsarServer const& server() const { return server_; }
-
 private:
     CostTable const costs_;
     TsarServer server_;

@@ -51,7 +51,7 @@ TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameter
       response_{realisable(plane_, setup.frames_per_second, batch_framelets_), parameters.gain,
                 // Both axes have one measure: the slowest rate counts as a sample per pixel. Were it the rate of
                 // `framed`, nothing in a picture that stands still would ask for more, and no density would be moved.
-                slowest_refresh * setup.frames_per_second, -setup.bias, parameters.strategy},
+                slowest_refresh * setup.frames_per_second, -setup.bias},
       // Elements are as small as the finest tile: 128x128 at 512x512 pixels, Table 7.1.
       density_(make_uniform_density(plane_.max_depth(), {1, setup.frames_per_second})),
       refreshed_(density_.size(), -1.0) {
@@ -61,7 +61,6 @@ TsarServer::TsarServer(MethodSetup const& setup, TsarParameters const& parameter
             density_.space[i] = 0;
         }
     }
-    surplus_.most = parameters.most_saved * combined_density(density_);
     build_tiling();
 }
 
@@ -96,7 +95,7 @@ ServerStep TsarServer::produce(StepInput const& input) {
 
     std::size_t const selected_from = tiling_.tiles.size();
     estimate(batch_);
-    respond(density_, elements_, errors_, response_, surplus_, scratch_);
+    respond(density_, elements_, errors_, response_, scratch_);
     build_tiling();
     forget_old_records();
 

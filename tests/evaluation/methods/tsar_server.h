@@ -15,8 +15,6 @@ namespace framelet::bench {
 struct TsarParameters {
     RateTemplates templates = haar_templates;
     double gain = 1; ///< samples per pixel, and slowest rates of refresh, that an error of 1 asks for: eq. 6.11 has 1
-    Transport strategy = Transport::shrink_larger; ///< "the safest" (section 6.3.2.3)
-    double most_saved = 0; ///< capacity of the surplus account, as a share of the budget
     /// Samples that a tile may have by its density before it is split: the geometric mean of a framelet's samples and
     /// those of its four children, so that the tiling has neither more nor fewer samples than the density.
     double most_samples = 2 * framelet_samples;
@@ -28,9 +26,6 @@ public:
 
     /// Renders and sends one batch, then responds to it.
     ServerStep produce(StepInput const& input);
-
-    Tiling const& tiling() const { return tiling_; }
-    DensityField const& density() const { return density_; }
 
 private:
     /// Record of a tile's last framelet.
@@ -48,7 +43,6 @@ private:
     ImagePlane const plane_;
     std::size_t const batch_framelets_;
     ResponseParameters response_;
-    Surplus surplus_;
     ResponseScratch scratch_;
 
     DensityField density_;

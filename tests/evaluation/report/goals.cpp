@@ -226,7 +226,6 @@ std::vector<Goal> goals_of(ReportFigures const& figures) {
     std::vector<json> live = figures.live;
     live.insert(live.end(), figures.narrow.begin(), figures.narrow.end());
     auto const linked = part(figures.runs, [](ReportRun const& run) { return run.link > 0; });
-    auto const is_oracle = [](std::string const& method) { return method == "oracle"; };
     std::vector<Value> const mse = beside_best_rival(live, "mse", 1);
     std::vector<Value> const machines = ratios(unlimited(figures.runs), is_rival), links = ratios(linked, is_rival);
     Bound const most = Bound::at_most, least = Bound::at_least;
@@ -275,7 +274,6 @@ std::vector<Goal> goals_of(ReportFigures const& figures) {
         all_of("painting a changed pixel, ns of a core", painting(figures.clocks), most, 15, 1),
         all_of("response, mirror included, % of the server's time", response_shares(figures.features), most, 5, 1),
         all_of("bits over `framed+warp`'s at equal error", bits(linked), most, 1, 2),
-        median_of("MSE over that of `oracle`, median", ratios(figures.oracle, is_oracle), 1.5),
     };
     return goals;
 }

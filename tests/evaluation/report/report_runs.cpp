@@ -195,9 +195,6 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
                 figures.runs.push_back(scene.run(method, options.link_machine, link, options.link_delay));
             }
         }
-        for (char const* const method : {"oracle", "framelet"}) {
-            figures.oracle.push_back(scene.run(method, usual_machine(options), 0, 0));
-        }
     }
     measure_turns(options, study, store, figures.turns);
     for (Flight const& walk : options.walks) {

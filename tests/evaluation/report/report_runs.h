@@ -54,7 +54,6 @@ struct ReportRun {
 struct ReportFigures {
     std::vector<ReportRun> runs;
     std::vector<ReportRun> turns; ///< runs while the camera turns: a "scene" is a scene at one speed
-    std::vector<ReportRun> oracle; ///< runs of `oracle`, and of `framelet` beside it
     std::vector<nlohmann::json> live, narrow, clocks; ///< as measure_live returns them
     std::vector<nlohmann::json> walks; ///< as measure_own_camera returns them
     nlohmann::json features; ///< as measure_feature_costs returns them

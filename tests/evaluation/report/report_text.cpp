@@ -50,7 +50,7 @@ std::string wrapped(std::string const& page) {
 }
 
 bool is_rival(std::string const& method) {
-    return !method.starts_with("framelet") && method != "oracle";
+    return !method.starts_with("framelet");
 }
 
 } // namespace framelet::bench

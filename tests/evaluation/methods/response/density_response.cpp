@@ -5,11 +5,12 @@
 
 #include "common/error.h"
 #include "tests/evaluation/methods/response/mixture.h"
+#include "tests/evaluation/methods/response/transport.h"
 
 namespace framelet {
 
 void respond(DensityField& density, std::span<std::uint32_t const> elements, std::span<RateError const> errors,
-             ResponseParameters const& parameters, Surplus& surplus, ResponseScratch& scratch) {
+             ResponseParameters const& parameters, ResponseScratch& scratch) {
     FRAMELET_CHECK(elements.size() == errors.size() && parameters.rate_unit > 0);
     double const unit = parameters.rate_unit;
     DensityBounds bounds = parameters.bounds;
@@ -21,16 +22,12 @@ void respond(DensityField& density, std::span<std::uint32_t const> elements, std
     std::size_t const count = elements.size();
     scratch.directions.resize(count);
     scratch.changes.resize(count);
-    scratch.limits.resize(count);
     for (std::size_t i = 0; i < count; ++i) {
         LocalResponse const local = respond_locally(at(i), errors[i], bounds, parameters.gain);
         scratch.directions[i] = local.direction;
         scratch.changes[i] = local.change;
-        scratch.limits[i] = local.limit;
     }
-    Surplus scaled{surplus.saved / unit, surplus.most / unit};
-    transport(scratch.changes, scratch.limits, parameters.strategy, scaled, scratch.transport);
-    surplus.saved = scaled.saved * unit;
+    transport(scratch.changes);
     for (std::size_t i = 0; i < count; ++i) {
         Density to = mix(at(i), scratch.directions[i], scratch.changes[i], bounds);
         if (parameters.bias != 0) {

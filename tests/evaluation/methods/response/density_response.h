@@ -8,7 +8,6 @@
 
 #include "tests/evaluation/methods/response/density_field.h"
 #include "tests/evaluation/methods/response/local_constraints.h"
-#include "tests/evaluation/methods/response/transport.h"
 
 namespace framelet {
 
@@ -18,20 +17,17 @@ struct ResponseParameters {
     /// Refreshes per second that are as long a step as one sample per pixel: a ray needs one measure for both axes.
     double rate_unit = 1;
     double bias = 0; ///< octaves by which an error of 1 slides density from time (> 0) or from space (< 0)
-    Transport strategy = Transport::fill_smaller;
 };
 
 /// Memory reused from cycle to cycle, so that nothing is allocated.
 struct ResponseScratch {
     std::vector<Density> directions;
-    std::vector<double> changes, limits;
-    TransportScratch transport;
+    std::vector<double> changes;
 };
 
 /// Changes the density by one cycle's errors. `errors[i]` belongs to element `elements[i]` of the density; each element
-/// comes once at most, those without error need not come. The surplus is in units of combined density: samples per
-/// pixel and second, summed over elements.
+/// comes once at most, those without error need not come.
 void respond(DensityField& density, std::span<std::uint32_t const> elements, std::span<RateError const> errors,
-             ResponseParameters const& parameters, Surplus& surplus, ResponseScratch& scratch);
+             ResponseParameters const& parameters, ResponseScratch& scratch);
 
 } // namespace framelet

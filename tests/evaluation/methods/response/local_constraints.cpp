@@ -29,13 +29,7 @@ LocalResponse respond_locally(Density at, RateError error, DensityBounds const& 
     auto const change_at = [&](double k) { return k * (linear + k * square); };
 
     double const change = change_at(std::min(farthest, gain * length));
-    double most = farthest;
-    if (square < 0 && change > 0) {
-        // The area along the ray is a parabola that opens downwards: it is highest at -L / 2Q (eq. 6.20).
-        most = std::min(farthest, -linear / (2 * square));
-    }
-    double const limit = change_at(most);
-    return {m, change, std::abs(limit) > std::abs(change) ? limit : change};
+    return {m, change};
 }
 
 } // namespace framelet

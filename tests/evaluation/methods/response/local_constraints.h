@@ -1,6 +1,5 @@
 // Determines what one element asks for within its own bounds ([Stephens 2011] section 6.2). In: its density and
-// sample-rate error. Out: in which direction it moves, by how much its combined density would change, and by how much
-// at most.
+// sample-rate error. Out: in which direction it moves, and by how much its combined density would change.
 #pragma once
 
 #include "tests/evaluation/methods/response/density.h"
@@ -12,7 +11,6 @@ namespace framelet {
 struct LocalResponse {
     Density direction; ///< m, of unit length (eq. 6.8); 0 where there is no error
     double change = 0; ///< dT* (eq. 6.16)
-    double limit = 0; ///< dT_max (eq. 6.22): of the same sign, at least as large
 
     bool operator==(LocalResponse const&) const = default;
 };
