@@ -1,22 +1,27 @@
 // The viewer without a window: holds the connection, takes in batches, and turns what it holds into a picture whenever
 // it is asked to, also while the server is gone. In: camera, settings, clock requests. Out: picture, status,
-// statistics.
+// statistics. Two threads share it: the connection's takes in what the server sends, the display's makes pictures.
 #pragma once
 
 #include <chrono>
+#include <condition_variable>
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "client/core/client_statistics.h"
-#include "client/core/connection/server_address.h"
-#include "client/core/picture/picture_maker.h"
-#include "common/framelet/tile.h"
-#include "common/image.h"
-#include "protocol/messages/message.h"
+#include "client/core/connection/server_connection.h"
+#include "client/core/picture/making_time.h"
+#include "client/core/picture/session_pictures.h"
+#include "client/core/session/arrived_batches.h"
+#include "client/core/session/asked_view.h"
+#include "client/core/session/server_state.h"
+#include "client/core/session/told_evictions.h"
+#include "protocol/codec/batch_codec.h"
 
 namespace framelet {
 
@@ -25,8 +30,6 @@ inline constexpr double max_lag_seconds = 1;
 /// Lag that suffices where a server renders some ten whole frames a second, seconds.
 inline constexpr double usual_lag_seconds = 0.1;
 
-struct ClientSession;
-
 /// All members may be called from any thread; `update_picture` and `draw_overlay` from one at a time. Painting holds
 /// nothing up: what comes meanwhile is decoded and answered, and shows in the next picture.
 class ClientCore {
@@ -34,7 +37,6 @@ public:
     /// Connects (blocks) and opens the session. `on_news` is called from the connection's thread whenever there is
     /// something new to show or to know; it must not call back. Throws as ServerConnection does.
     explicit ClientCore(ConnectionOptions const& options, std::function<void()> on_news = {});
-    ~ClientCore();
     ClientCore(ClientCore const&) = delete;
     ClientCore& operator=(ClientCore const&) = delete;
 
@@ -113,7 +115,91 @@ public:
     ClientStatistics statistics() const;
 
 private:
-    std::unique_ptr<ClientSession> session_;
+    using Clock = std::chrono::steady_clock;
+
+    static double seconds_between(Clock::time_point from, Clock::time_point to) {
+        return std::chrono::duration<double>(to - from).count();
+    }
+
+    /// Sends the newest view where nothing else is queued: one camera at most is in the network's queue, and of those
+    /// that are set while it waits only the newest is sent. Call it with `mutex_` held.
+    void send_view();
+    /// Puts all batches that have arrived into what pictures are made of. Call it with `picture_mutex_` held, without
+    /// `mutex_`.
+    void take_in();
+    /// True once the server has said that the newest view has converged, and all its batches have come. Call it with
+    /// `mutex_` held.
+    bool is_settled() const;
+    /// As `is_complete`. Call it with `mutex_` held.
+    bool shows_all() const;
+    /// True once after another scene has taken the place of the one that was shown.
+    bool is_clean_start();
+    /// The request for a picture of what will be the present when it is seen.
+    PictureRequest picture_request() const;
+    /// Age in seconds of what the last picture shows when it is seen: since its camera was set or, through a camera of
+    /// the scene, since its moment was the present; -1: it shows nothing new. Call it with `mutex_` held.
+    double photon_seconds(Clock::time_point seen);
+
+    void receive(Message message);
+    void receive_batch(EncodedBatch const& encoded);
+    /// Gives back memory that is free now and then: framelets leave theirs in small blocks, others behind them.
+    void give_back_memory(Clock::time_point now);
+    /// Interrupts the session; what has come is kept for the time without one.
+    void pause_session(std::string reason);
+    /// Asks to go on with the session before, where the viewer holds what the server thinks it holds, but for batches
+    /// that are still to come.
+    void ask_to_go_on(Hello& hello);
+    void begin_session(Welcome greeting);
+    /// Drops the state of the session that has ended. Its picture goes on being shown if the next session is of the
+    /// same scene. Call it with `picture_mutex_` held.
+    void forget_session(Welcome const& next);
+    void tell_news();
+    /// Tells the server of all framelets that the maker has evicted. Call it with `picture_mutex_` held.
+    void tell_evicted(PictureMaker& maker);
+    /// Notes in the statistics what is held. Call it with `mutex_` held. `coverage` < 0: nothing has come.
+    void note_held(PictureMaker const& maker, double coverage, bool is_fine, Clock::time_point now);
+    /// Notes the time from when this camera was sent until the first batch seen from it was received. Call it with
+    /// `mutex_` held.
+    void note_round_trip(std::uint64_t camera_number, Clock::time_point received);
+
+    std::function<void()> const on_news_; ///< called without a lock
+    Clock::time_point const start_ = Clock::now();
+    // State of this session's stream, used by the connection's thread only.
+    std::optional<BatchCodec> codec_{std::in_place};
+    std::optional<BatchMemory> memory_{std::in_place};
+    bool is_whole_ = true; ///< every batch that has come is decoded and among `arrived_`, or taken in already
+    Clock::time_point given_back_ = start_; ///< when memory was given back last
+
+    /// Guards what pictures are made of. Whoever holds it may lock `mutex_` as well, not the other way round.
+    mutable std::mutex picture_mutex_;
+    SessionPictures pictures_;
+    std::vector<Batch> taken_; ///< scratch
+    std::vector<SentTile> evicted_; ///< scratch
+
+    mutable std::mutex mutex_; // guards all that follows, but the connection; never held for long
+    std::condition_variable news_arrived_;
+    bool news_ = false;
+    ArrivedBatches arrived_; ///< batches that are not in the maker yet
+    ToldEvictions told_evictions_;
+    AskedView asked_;
+    ViewerSettings viewer_settings_;
+    PictureSettings picture_settings_;
+    DrawnOver drawn_over_ = DrawnOver::nothing;
+    bool has_picture_ = false; ///< something is held of the newest viewport
+    std::uint64_t last_batch_ = 0;
+    ShownPicture shown_; ///< the last one; before there is one, it has the start camera
+    Clock::time_point shown_at_; ///< when the last picture was to be seen; does not go back
+    MakingTime making_;
+    bool is_smooth_ = false;
+    ServerState server_;
+    Welcome welcome_;
+    std::uint64_t scene_number_ = 1;
+    bool starts_clean_ = false; ///< what is shown is of another scene, and is to be cleared
+    std::optional<std::string> interruption_;
+    std::optional<std::string> end_reason_;
+    ClientStatistics statistics_;
+
+    std::unique_ptr<ServerConnection> connection_; // last: its thread uses the rest
 };
 
 /// The camera of the scene that a viewer looks through until the user moves: the first one, its animation included; -1

@@ -5,7 +5,7 @@
 
 #include "client/window/dropped_files.h"
 #include "client/window/kept/user_files.h"
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
 #include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"

@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "client/window/gamepad.h"
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
 #include "client/window/picture_texture.h"
 #include "client/window/screen_choice.h"
 #include "common/error.h"

@@ -90,10 +90,10 @@ struct LeftThird {
         pictures.show(request, picture, changed);
     }
     Picture drawn(DrawnOver what) {
-        pictures.set_drawn_over(what);
-        pictures.prepare(view, settings);
+        request.drawn_over = what;
+        show(request.now);
         Picture out = picture;
-        pictures.draw_over(out);
+        pictures.shown()->draw_over(out);
         return out;
     }
 };
@@ -132,19 +132,19 @@ TEST(DrawnOver, RefreshesAreCountedWhileTheyAreDrawn) {
     viewer.show(0);
     Picture const grey = viewer.drawn(DrawnOver::refresh_rate);
     EXPECT_EQ(different_pixels(grey, viewer.picture, 0, 32), 0u) << "what came before is not counted";
-    EXPECT_FALSE(viewer.pictures.drawn_over_fades());
+    EXPECT_FALSE(viewer.pictures.shown()->drawn_over_fades());
     viewer.insert();
     viewer.show(0.1);
-    EXPECT_TRUE(viewer.pictures.drawn_over_fades());
+    EXPECT_TRUE(viewer.pictures.shown()->drawn_over_fades());
     Picture const washed = viewer.drawn(DrawnOver::refresh_rate);
     EXPECT_EQ(different_pixels(washed, grey, 0, 32), 32u * 60u);
     EXPECT_EQ(different_pixels(washed, grey, 32, 100), 0u);
     viewer.show(20);
-    EXPECT_FALSE(viewer.pictures.drawn_over_fades());
+    EXPECT_FALSE(viewer.pictures.shown()->drawn_over_fades());
     EXPECT_EQ(viewer.drawn(DrawnOver::refresh_rate), grey);
     viewer.insert();
     viewer.drawn(DrawnOver::nothing);
-    EXPECT_FALSE(viewer.pictures.drawn_over_fades());
+    EXPECT_FALSE(viewer.pictures.shown()->drawn_over_fades());
     EXPECT_EQ(viewer.drawn(DrawnOver::refresh_rate), grey) << "it begins anew";
 }
 

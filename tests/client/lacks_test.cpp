@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/commands.h"
 #include "client/window/overlay/overlay_text.h"
 
 namespace framelet {

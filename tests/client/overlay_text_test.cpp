@@ -6,7 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/commands.h"
+#include "client/window/overlay/lacks.h"
 
 namespace framelet {
 namespace {

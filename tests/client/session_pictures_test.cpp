@@ -78,10 +78,10 @@ TEST(PictureMaker, AtRestACameraOfTheSceneIsWhereItsPictureWasTaken) {
     shown.request.camera_number = batch.view.number;
     EXPECT_EQ(at_time(shown, batch.scene_time), 80);
     PictureMaker const& maker = shown.pictures.prepare(shown.view, shown.settings);
-    EXPECT_EQ(maker.shown_camera(), batch.view.camera);
+    EXPECT_EQ(maker.last_shown().camera, batch.view.camera);
     EXPECT_TRUE(maker.is_exact());
     at_time(shown, 0.6 / body_keys_per_second);
-    EXPECT_NEAR(maker.shown_camera().position.x, 0.6, 1e-4) << "by its track";
+    EXPECT_NEAR(maker.last_shown().camera.position.x, 0.6, 1e-4) << "by its track";
 }
 
 TEST(PictureMaker, WhatIsNotToBeShownYetWaits) {
@@ -233,7 +233,7 @@ TEST(SessionPictures, OfAnEarlierThatIsForgottenNothingIsKept) {
     shown.insert(left_of(64, 70));
     EXPECT_EQ(shown.at(10), 50);
     shown.pictures.forget_earlier();
-    EXPECT_EQ(shown.pictures.memory_bytes(), shown.pictures.current()->memory_bytes());
+    EXPECT_EQ(shown.pictures.memory_bytes(), shown.pictures.shown()->memory_bytes());
     EXPECT_EQ(shown.at(10), 70);
 }
 
@@ -280,22 +280,22 @@ TEST(PictureMaker, WhatIsMovedIsPaintedOnTheCanvasAndNothingElse) {
     std::vector<PixelRect> changed;
     PictureRequest request;
     EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
-    EXPECT_FALSE(maker.is_on_canvas()) << "nothing has moved";
+    EXPECT_FALSE(maker.last_shown().is_on_canvas) << "nothing has moved";
     request.camera.orientation = glm::angleAxis(0.1f, Vec3(0, 1, 0));
     EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
-    EXPECT_TRUE(maker.is_on_canvas());
+    EXPECT_TRUE(maker.last_shown().is_on_canvas);
     EXPECT_GT(canvas.painted, 0);
     EXPECT_EQ(picture.width, 100) << "it has the size";
     EXPECT_FALSE(maker.show(request, picture, changed, &canvas)) << "nothing has changed";
-    EXPECT_TRUE(maker.is_on_canvas());
+    EXPECT_TRUE(maker.last_shown().is_on_canvas);
     canvas.painted = 0;
     maker.set({.lag_seconds = 0.1});
     EXPECT_TRUE(maker.show(request, picture, changed, &canvas));
-    EXPECT_FALSE(maker.is_on_canvas()) << "two pictures are mixed in memory";
+    EXPECT_FALSE(maker.last_shown().is_on_canvas) << "two pictures are mixed in memory";
     EXPECT_EQ(canvas.painted, 0);
     maker.set({.reproject = false});
     maker.show(request, picture, changed, &canvas);
-    EXPECT_FALSE(maker.is_on_canvas());
+    EXPECT_FALSE(maker.last_shown().is_on_canvas);
 }
 
 /// Two makers take turns on one canvas; it has the picture of one of them at a time.
@@ -309,15 +309,15 @@ TEST(SessionPictures, TheSessionBeforeIsOnTheCanvasUntilThisOneIs) {
         return shown.pictures.show(shown.request, shown.picture, shown.changed, &canvas);
     };
     EXPECT_TRUE(show());
-    EXPECT_TRUE(shown.pictures.shown().is_on_canvas());
+    EXPECT_TRUE(shown.pictures.shown()->last_shown().is_on_canvas);
     shown.begin_anew();
     shown.insert(left_of(32, 80));
     show();
-    EXPECT_TRUE(shown.pictures.shown().is_on_canvas()) << "the session before";
+    EXPECT_TRUE(shown.pictures.shown()->last_shown().is_on_canvas) << "the session before";
     shown.insert(left_of(100, 80));
     canvas.painted = 0;
     EXPECT_TRUE(show());
-    EXPECT_TRUE(shown.pictures.shown().is_on_canvas());
+    EXPECT_TRUE(shown.pictures.shown()->last_shown().is_on_canvas);
     EXPECT_EQ(canvas.painted, 7 * 4) << "this one, all of it";
 }
 

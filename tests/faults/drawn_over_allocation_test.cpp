@@ -16,11 +16,12 @@ TEST(DrawnOverAllocation, IsNoneForRefreshRatesAndArrivals) {
                    }));
     for (DrawnOver const kind : {DrawnOver::refresh_rate, DrawnOver::arrivals}) {
         PictureMaker maker(plane.viewport(), {});
-        maker.set_drawn_over(kind);
-        maker.insert(batch);
         PictureRequest request;
+        request.drawn_over = kind;
         Picture picture;
         std::vector<PixelRect> changed;
+        maker.show(request, picture, changed);
+        maker.insert(batch);
         maker.show(request, picture, changed);
         Picture const before = picture;
         FailingAllocation const counts(UINT64_MAX);

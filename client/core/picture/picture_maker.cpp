@@ -55,7 +55,7 @@ void PictureMaker::insert(Batch const& batch) {
     if (batch.outdates) {
         motions_.jump_at(batch.shown_from);
     }
-    if (shown_pixels_ == nullptr || !settings_.reproject || batch.shown_from <= shown_time_) {
+    if (shown_pixels_ == nullptr || !settings_.reproject || batch.shown_from <= last_.time) {
         take_waiting(waiting_.size());
         take(batch);
         return;
@@ -80,8 +80,8 @@ void PictureMaker::take_waiting(std::size_t count) {
 
 void PictureMaker::take(Batch const& batch) {
     if (shown_pixels_ == nullptr) {
-        shown_camera_ = batch.view.camera;
-        shown_time_ = batch.scene_time;
+        last_.camera = batch.view.camera;
+        last_.time = batch.scene_time;
     }
     batch_view_ = batch.view;
     batch_time_ = batch.scene_time;
@@ -129,9 +129,22 @@ Camera PictureMaker::wanted_camera(PictureRequest const& request, SceneTime time
     return track == nullptr || is_seen ? newest : camera_at(*track, time, newest);
 }
 
+/// Begins or ends to count refreshes where something else is to be drawn over the picture.
+void PictureMaker::count_refreshes(DrawnOver what) {
+    if (what == drawn_over_) {
+        return;
+    }
+    drawn_over_ = what;
+    rates_.reset();
+    if (what == DrawnOver::refresh_rate) {
+        rates_.emplace(pool_.plane());
+    }
+}
+
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
                         BlockCanvas* canvas) {
     changed.clear();
+    count_refreshes(request.drawn_over);
     if (rates_) {
         rates_->advance(request.now);
     }
@@ -159,37 +172,22 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         shown_pixels_ = picture.rgba.data();
     }
     if (!settings_.reproject) {
-        shown_camera_ = batch_view_.camera;
-        shown_camera_number_ = batch_view_.number;
-        shown_time_ = batch_time_;
+        last_ = {batch_view_.camera, batch_view_.number, batch_time_};
         reconstruct(pool_.newest(), changed, picture);
         return !changed.empty();
     }
-    Camera const camera = wanted_camera(request, time);
-    shown_camera_ = camera;
-    shown_camera_number_ = request.camera_number;
-    shown_time_ = time;
+    last_ = {wanted_camera(request, time), request.camera_number, time};
     arrived_.swap(changed);
     if (smoother_) {
         SceneTime const lag = settings_.lag_seconds * std::abs(request.clock_speed);
-        smoother_->show(pool_, arrived_, camera, time, lag, motions_, picture, changed);
+        smoother_->show(pool_, arrived_, last_.camera, time, lag, motions_, picture, changed);
         pool_.note_shown(smoother_->shown_blocks());
     } else {
-        reprojector_.show(pool_, arrived_, camera, time, motions_, picture, changed, canvas);
+        reprojector_.show(pool_, arrived_, last_.camera, time, motions_, picture, changed, canvas);
+        last_.is_on_canvas = reprojector_.is_on_canvas();
         pool_.note_shown(reprojector_.shown_blocks());
     }
     return !changed.empty();
-}
-
-void PictureMaker::set_drawn_over(DrawnOver what) {
-    if (what == drawn_over_) {
-        return;
-    }
-    drawn_over_ = what;
-    rates_.reset();
-    if (what == DrawnOver::refresh_rate) {
-        rates_.emplace(pool_.plane());
-    }
 }
 
 void PictureMaker::draw_over(Picture& picture) {
@@ -207,7 +205,7 @@ void PictureMaker::draw_over(Picture& picture) {
             draw_outlines(pool_.newest(), picture);
             break;
         }
-        find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence_);
+        find_confidence(pool_, last_.camera, last_.time, motions_, confidence_);
         draw_confidence(confidence_, picture);
         break;
     case DrawnOver::refresh_rate:
@@ -221,18 +219,18 @@ void PictureMaker::draw_over(Picture& picture) {
             draw_holes(pool_.newest(), picture);
             break;
         }
-        find_confidence(pool_, shown_camera_, shown_time_, motions_, confidence_);
+        find_confidence(pool_, last_.camera, last_.time, motions_, confidence_);
         draw_holes(confidence_, picture);
         break;
     }
 }
 
 std::optional<Vec3> PictureMaker::point_at(Vec2 position) const {
-    return find_shown_point(pool_, shown_camera_, shown_time_, motions_, position);
+    return find_shown_point(pool_, last_.camera, last_.time, motions_, position);
 }
 
 std::vector<float> PictureMaker::depths() const {
-    return find_shown_depths(pool_, shown_camera_, shown_time_, motions_);
+    return find_shown_depths(pool_, last_.camera, last_.time, motions_);
 }
 
 double PictureMaker::coverage() const {

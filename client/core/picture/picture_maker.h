@@ -38,6 +38,15 @@ struct PictureRequest {
     double clock_speed = 1; ///< scene seconds a second
     double now = 0; ///< seconds of the viewer's own clock
     bool is_settled = false; ///< all that belongs to a complete picture of this has been inserted
+    DrawnOver drawn_over = DrawnOver::nothing; ///< that `PictureMaker::draw_over` is to draw over it
+};
+
+/// What a picture is of, and where it is. Before there is one, that of the newest batch.
+struct ShownPicture {
+    Camera camera;
+    std::uint64_t camera_number = 0; ///< number of `camera`, where the viewer gave it; 0 before there is a picture
+    SceneTime time = 0;
+    bool is_on_canvas = false; ///< it is not in memory
 };
 
 /// The picture of a viewer that holds nothing.
@@ -62,15 +71,11 @@ public:
 
     /// Brings `picture` up to date. True when it changed; `changed` gets the rectangles that may differ. A picture that
     /// lies elsewhere than that of the last call, or has another size, is written as a whole. Nothing happens while
-    /// nothing is held. With a canvas what is moved is painted there, unless the scene is smoothed: `is_on_canvas` says
-    /// so. Throws what the canvas throws.
+    /// nothing is held. With a canvas what is moved is painted there, unless the scene is smoothed: `last_shown` says
+    /// so. Throws what the canvas throws. Refreshes are counted while they are to be drawn.
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
               BlockCanvas* canvas = nullptr);
-    /// True when the last picture is not in memory but on the canvas.
-    bool is_on_canvas() const { return settings_.reproject && !smoother_ && reprojector_.is_on_canvas(); }
-    /// Sets what `draw_over` draws. Refreshes are counted from then on, and only while they are to be drawn.
-    void set_drawn_over(DrawnOver what);
-    /// Draws over a copy of the picture that was shown last.
+    /// Draws over a copy of the picture that was shown last what its request said.
     void draw_over(Picture& picture);
     /// True while what is drawn over changes as time goes by, be the picture as it was or not.
     bool drawn_over_fades() const { return rates_ && rates_->fades(); }
@@ -79,11 +84,7 @@ public:
     /// The depths of the last picture's pixels, as `find_shown_depths`.
     std::vector<float> depths() const;
 
-    /// The camera and the scene time of the last picture; before there is one, those of the newest batch.
-    Camera const& shown_camera() const { return shown_camera_; }
-    SceneTime shown_time() const { return shown_time_; }
-    /// The number of that camera, where the viewer gave it.
-    std::uint64_t shown_camera_number() const { return shown_camera_number_; }
+    ShownPicture const& last_shown() const { return last_; }
     /// True when the last picture was made by `reconstruct` as a whole: nothing in it was moved.
     bool is_exact() const { return !settings_.reproject || (!smoother_ && reprojector_.is_exact()); }
     /// Share of the picture that is covered by what is held, [0, 1]; once samples are moved, that of the last picture.
@@ -97,6 +98,7 @@ private:
     void take_waiting(std::size_t count);
     void evict();
     void settle();
+    void count_refreshes(DrawnOver what);
     SceneTime wanted_time(PictureRequest const& request);
     Camera wanted_camera(PictureRequest const& request, SceneTime time) const;
 
@@ -112,9 +114,7 @@ private:
     std::optional<SceneSmoother> smoother_;
     NumberedView batch_view_; ///< of the newest batch
     SceneTime batch_time_ = 0; ///< of the newest batch
-    Camera shown_camera_;
-    std::uint64_t shown_camera_number_ = 0;
-    SceneTime shown_time_ = 0;
+    ShownPicture last_;
     std::uint8_t const* shown_pixels_ = nullptr; ///< recognises the caller's picture
     std::vector<Tile> shown_tiles_; ///< scratch
     std::vector<PixelRect> arrived_; ///< scratch: where batches have changed something

@@ -15,10 +15,8 @@ PictureMaker& SessionPictures::prepare(NumberedView const& wanted, PictureSettin
         since_ = wanted.held_since;
     }
     current_->set(settings);
-    current_->set_drawn_over(drawn_over_);
     if (earlier_) {
         earlier_->set(settings);
-        earlier_->set_drawn_over(drawn_over_);
     }
     return *current_;
 }

@@ -14,8 +14,6 @@ class SessionPictures {
 public:
     /// The maker that takes batches of this view; it holds nothing yet where `held_since` is another than last time.
     PictureMaker& prepare(NumberedView const& wanted, PictureSettings const& settings);
-    /// The maker of this session; null before `prepare` was called in it.
-    PictureMaker const* current() const { return current_.get(); }
     /// True where there is a maker of this session, and it is for this view.
     bool is_for(NumberedView const& view) const { return current_ && since_ == view.held_since; }
 
@@ -33,13 +31,8 @@ public:
     /// complete, which is found out by making both, or has another size and shows anything. Call it after `prepare`.
     bool show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
               BlockCanvas* canvas = nullptr);
-    /// Sets what `draw_over` draws over the pictures of all makers, from the next `prepare` on.
-    void set_drawn_over(DrawnOver what) { drawn_over_ = what; }
-    /// Has the maker whose picture is shown draw over a copy of it. Call this and the next one after `prepare`.
-    void draw_over(Picture& picture) { (earlier_ ? earlier_ : current_)->draw_over(picture); }
-    bool drawn_over_fades() const { return shown().drawn_over_fades(); }
-    /// The maker whose picture is shown. Call it after `prepare`.
-    PictureMaker const& shown() const { return earlier_ ? *earlier_ : *current_; }
+    /// The maker whose picture is shown; null before the first `prepare`.
+    PictureMaker* shown() const { return (earlier_ ? earlier_ : current_).get(); }
     std::size_t memory_bytes() const;
 
 private:
@@ -53,7 +46,6 @@ private:
     SceneTime paused_ = 0; ///< that `earlier_` shows
     Picture unseen_; ///< this session's, while that of the one before is shown
     std::vector<PixelRect> unseen_changes_; ///< scratch
-    DrawnOver drawn_over_ = DrawnOver::nothing;
 };
 
 } // namespace framelet

@@ -1,7 +1,6 @@
 #include "client/window/overlay/lacks.h"
 
-#include "client/window/overlay/help_text.h"
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
 
 namespace framelet {
 

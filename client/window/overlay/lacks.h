@@ -8,6 +8,11 @@
 
 namespace framelet {
 
+/// Text that is shown where another viewer has the scene's clock at its disposal.
+inline constexpr char const* watching_text = "another viewer controls the scene's clock";
+/// Text that is shown where no scene's clock moves anything.
+inline constexpr char const* nothing_moves_text = "nothing moves in this scene";
+
 /// Says why the scene's clock cannot be set. `is_gone`: there is no session. `moves`: the scene has animation.
 /// `controls`: as in Status.
 std::string clock_lacks(bool is_gone, bool moves, bool controls);

@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
 #include "client/window/overlay/lacks.h"
 #include "client/window/overlay/overlay_text.h"
 

@@ -8,8 +8,7 @@
 
 #include "client/core/drawn_over/drawn_over.h"
 #include "client/window/named_server.h"
-#include "client/window/overlay/command.h"
-#include "client/window/overlay/help_text.h"
+#include "client/window/overlay/commands.h"
 #include "client/window/overlay/time_line.h"
 
 namespace framelet {

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "client/window/overlay/help_text.h"
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
+#include "client/window/overlay/lacks.h"
 #include "common/counted.h"
 
 namespace framelet {

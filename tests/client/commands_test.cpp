@@ -1,4 +1,4 @@
-#include "client/window/overlay/key_table.h"
+#include "client/window/overlay/commands.h"
 
 #include <set>
 #include <tuple>
@@ -8,12 +8,11 @@
 #include <gtest/gtest.h>
 
 #include "client/core/drawn_over/drawn_over.h"
-#include "client/window/overlay/help_text.h"
 
 namespace framelet {
 namespace {
 
-TEST(KeyTable, NoKeyMeansTwoThings) {
+TEST(Commands, NoKeyMeansTwoThings) {
     std::set<std::tuple<int, bool, bool, bool>> seen;
     for (KeyMeaning const& meaning : key_meanings()) {
         EXPECT_TRUE(seen.insert({meaning.key, meaning.with.shift, meaning.with.control, meaning.with.alt}).second)
@@ -21,7 +20,7 @@ TEST(KeyTable, NoKeyMeansTwoThings) {
     }
 }
 
-TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
+TEST(Commands, EveryCommandHasAKeyAndAWordInTheHelp) {
     TextRows help;
     for (HelpGroup const& group : help_groups("")) {
         help.insert(help.end(), group.rows.begin(), group.rows.end());
@@ -37,13 +36,13 @@ TEST(KeyTable, EveryCommandHasAKeyAndAWordInTheHelp) {
     }
 }
 
-TEST(KeyTable, TheHelpNamesEveryOverlay) {
+TEST(Commands, TheHelpNamesEveryOverlay) {
     for (char const* const name : drawn_over_names) {
         EXPECT_NE(help_text(Command::next_overlay).find(name), std::string::npos) << name;
     }
 }
 
-TEST(HelpText, WhatOneNeedsFirstComesFirst) {
+TEST(Commands, WhatOneNeedsFirstComesFirst) {
     std::vector<HelpGroup> const groups = help_groups("");
     std::string first;
     for (auto const& [keys, text] : groups.front().rows) {
@@ -59,7 +58,7 @@ TEST(HelpText, WhatOneNeedsFirstComesFirst) {
     }
 }
 
-TEST(HelpText, TwoColumnsAreAboutAsHigh) {
+TEST(Commands, TwoColumnsAreAboutAsHigh) {
     auto const of = [](std::vector<std::size_t> const& sizes) {
         std::vector<HelpGroup> out;
         for (std::size_t const size : sizes) {
@@ -75,7 +74,7 @@ TEST(HelpText, TwoColumnsAreAboutAsHigh) {
     EXPECT_EQ(of({5, 1, 1, 1}), 1u);
 }
 
-TEST(KeyTable, ShiftCountsWhereItMeansSomething) {
+TEST(Commands, ShiftCountsWhereItMeansSomething) {
     EXPECT_EQ(command_of_key(GLFW_KEY_B, {}, false), Command::add_bookmark);
     EXPECT_EQ(command_of_key(GLFW_KEY_B, {.shift = true}, false), Command::remove_bookmark);
     EXPECT_EQ(command_of_key(GLFW_KEY_EQUAL, {.shift = true}, false), Command::faster);
@@ -88,12 +87,12 @@ TEST(KeyTable, ShiftCountsWhereItMeansSomething) {
     EXPECT_EQ(command_of_key(GLFW_KEY_F12 + 1, {}, false), std::nullopt);
 }
 
-TEST(KeyTable, OnlyStepsRepeat) {
+TEST(Commands, OnlyStepsRepeat) {
     EXPECT_EQ(command_of_key(GLFW_KEY_PERIOD, {}, true), Command::step_forward);
     EXPECT_EQ(command_of_key(GLFW_KEY_F9, {}, true), std::nullopt);
 }
 
-TEST(KeyTable, NamesAreThoseOnTheKeyboard) {
+TEST(Commands, NamesAreThoseOnTheKeyboard) {
     EXPECT_EQ(key_names(Command::toggle_statistics), "F2 or Tab");
     EXPECT_EQ(key_names(Command::toggle_fullscreen), "F11 or Alt+Enter");
     EXPECT_EQ(key_names(Command::faster), "+");
