@@ -6,14 +6,9 @@
 #include <vector>
 
 #include "server/render/light/light.h"
+#include "server/render/path/path_options.h"
 
 namespace framelet {
-
-/// Sizes of lights that a scene file does not tell. 0: hard.
-struct LampSizes {
-    float sun = 0; ///< angular radius of directional lights, radians
-    float lamp = 0; ///< radius of point and spot lights, metres
-};
 
 /// What one light sends to a point.
 struct LampShine {

@@ -8,6 +8,7 @@
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
 #include "server/render/path/path_random.h"
+#include "server/render/path/path_tracing.h"
 #include "server/render/prepared/prepared_scene.h"
 #include "server/render/view_packet.h"
 

@@ -3,7 +3,7 @@
 
 #include "common/camera.h"
 #include "common/image.h"
-#include "server/render/path/path_tracing.h"
+#include "server/render/path/path_options.h"
 #include "server/render/prepared/render_scene.h"
 
 namespace framelet {

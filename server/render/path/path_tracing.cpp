@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "server/render/light/brdf.h"
+#include "server/render/path/lamps.h"
 #include "server/render/path/path_random.h"
 #include "server/render/path/scattering.h"
 #include "server/render/trace/shading.h"

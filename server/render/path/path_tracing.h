@@ -10,21 +10,10 @@
 #pragma once
 
 #include "server/render/path/area_lights.h"
-#include "server/render/path/lamps.h"
+#include "server/render/path/path_options.h"
 #include "server/render/path/sky_table.h"
 
 namespace framelet {
-
-/// By which rays light with a size (lamps, emissive triangles, environment) is found. All agree in the mean.
-enum class LightRays { both, to_lights, by_surface };
-
-struct PathOptions {
-    int paths = 64; ///< of each sample
-    std::uint32_t seed = 0;
-    LampSizes sizes{};
-    LightRays light_rays = LightRays::both;
-    bool lambertian = false; ///< surfaces reflect base colour * (1 - metallic) and have no gloss: for known answers
-};
 
 /// What paths sample of a scene in its present pose. The scene must stay as it is while this is used.
 struct PathScene {
