@@ -149,6 +149,19 @@ TEST(PathTracing, SphericalLampLightsAPlaneByItsFormFactor) {
     }
 }
 
+TEST(PathTracing, InsideALampIsAsBrightAsItsSurface) {
+    Scene scene = floor_of(0.5f);
+    Light lamp;
+    lamp.intensity = 7;
+    add_light(scene, lamp, {0, 0.1f, 0}, {0, -1, 0});
+    RenderScene const ready(scene, black());
+    PathScene const paths(ready.prepared());
+    PathOptions options = lambertian(256);
+    options.sizes.lamp = 0.5f;
+    float const expected = 0.5f / pi * 7 / (0.5f * 0.5f);
+    EXPECT_NEAR(look(paths, {0, 0.05f, 0}, {0, -1, 0}, options).g, expected, 1e-3f * expected);
+}
+
 TEST(PathTracing, GlowingSphereLightsAPlaneByItsFormFactor) {
     Scene scene = floor_of(0.5f);
     scene.materials.push_back(glowing(Vec3(0), Vec3(3)));

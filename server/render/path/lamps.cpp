@@ -51,7 +51,10 @@ float shine_of_lamps(std::span<RenderLight const> lights, LampSizes sizes, Vec3 
         bool const reached = arriving_light(light, at, facing, 1, arriving) != 0;
         shine.arriving = reached ? light.intensity * arriving.irradiance[0] : Vec3(0);
         shine.sine = is_sun ? std::sin(sizes.sun) : sizes.lamp / std::max(shine.distance, 1e-10f);
-        shine.sine = shine.sine < 1 ? shine.sine : 0; // from inside, a point
+        if (shine.sine >= 1) { // inside it is a point, no brighter than at its surface
+            shine.arriving /= shine.sine * shine.sine;
+            shine.sine = 0;
+        }
         float const cosine = std::min(glm::dot(normal, shine.to_light) + shine.sine, 1.0f);
         float const strength = glm::dot(shine.arriving, Vec3(0.2126f, 0.7152f, 0.0722f));
         shine.weight = cosine > 0 ? strength * cosine : 0.0f;
