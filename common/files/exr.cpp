@@ -24,20 +24,29 @@ Imf::Slice slice_of(std::vector<float> const& values, int width) {
 } // namespace
 
 std::string exr_bytes(Picture const& picture, std::vector<float> const& depths) {
-    std::size_t const pixels = picture.rgba.size() / 4;
+    FloatImage linear(picture.width, picture.height);
+    for (std::size_t i = 0; i < linear.rgb.size(); ++i) {
+        std::uint8_t const* const pixel = picture.rgba.data() + 4 * i;
+        linear.rgb[i] = {linear_from_srgb_byte(pixel[0]), linear_from_srgb_byte(pixel[1]),
+                         linear_from_srgb_byte(pixel[2])};
+    }
+    return exr_bytes(linear, depths);
+}
+
+std::string exr_bytes(FloatImage const& radiance, std::vector<float> const& depths) {
+    std::size_t const pixels = radiance.rgb.size();
     FRAMELET_CHECK(depths.empty() || depths.size() == pixels);
-    Imf::Header header(picture.width, picture.height);
+    Imf::Header header(radiance.width, radiance.height);
     header.compression() = Imf::NO_COMPRESSION;
     Imf::FrameBuffer values;
     auto const add = [&](char const* name, std::vector<float> const& channel) {
         header.channels().insert(name, Imf::Channel(Imf::FLOAT));
-        values.insert(name, slice_of(channel, picture.width));
+        values.insert(name, slice_of(channel, radiance.width));
     };
     std::array<std::vector<float>, 3> colours;
     for (std::size_t channel = 0; channel < colours.size(); ++channel) {
-        colours[channel].resize(pixels);
-        for (std::size_t i = 0; i < pixels; ++i) {
-            colours[channel][i] = linear_from_srgb_byte(picture.rgba[4 * i + channel]);
+        for (Vec3 const& pixel : radiance.rgb) {
+            colours[channel].push_back(pixel[static_cast<int>(channel)]);
         }
         add(std::array{"R", "G", "B"}[channel], colours[channel]);
     }
@@ -48,7 +57,7 @@ std::string exr_bytes(Picture const& picture, std::vector<float> const& depths) 
     {
         Imf::OutputFile file(out, header, 0); // threads: none but this
         file.setFrameBuffer(values);
-        file.writePixels(picture.height);
+        file.writePixels(radiance.height);
     }
     return out.str();
 }

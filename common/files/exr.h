@@ -13,4 +13,7 @@ namespace framelet {
 /// `depths` becomes channel Z, in the order of the pixels, metres; where it is empty there is no such channel.
 std::string exr_bytes(Picture const& picture, std::vector<float> const& depths);
 
+/// The same of radiance, not limited to [0, 1].
+std::string exr_bytes(FloatImage const& radiance, std::vector<float> const& depths = {});
+
 } // namespace framelet

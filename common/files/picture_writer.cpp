@@ -133,4 +133,8 @@ void write_exr(std::filesystem::path const& file, Picture const& picture, std::v
     write_content(file, exr_bytes(picture, depths));
 }
 
+void write_exr(std::filesystem::path const& file, FloatImage const& radiance) {
+    write_content(file, exr_bytes(radiance));
+}
+
 } // namespace framelet

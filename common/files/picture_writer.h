@@ -19,4 +19,7 @@ void write_ppm(std::filesystem::path const& file, Picture const& picture);
 /// file.
 void write_exr(std::filesystem::path const& file, Picture const& picture, std::vector<float> const& depths);
 
+/// Writes radiance, not limited to [0, 1]. Throws InputError, which names the file.
+void write_exr(std::filesystem::path const& file, FloatImage const& radiance);
+
 } // namespace framelet

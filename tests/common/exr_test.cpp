@@ -29,10 +29,12 @@ struct Read {
     }
 };
 
-Read read_back(Picture const& picture, std::vector<float> const& depths) {
+/// Reads what `write_exr` makes of these.
+template <class... Contents>
+Read read_back(Contents const&... contents) {
     auto const file = std::filesystem::temp_directory_path() / ("framelet_exr_test_" + std::to_string(::getpid()));
     auto const named = std::filesystem::path(file).replace_extension(".exr");
-    write_exr(named, picture, depths);
+    write_exr(named, contents...);
     auto const input = OIIO::ImageInput::open(named.string());
     Read out;
     EXPECT_TRUE(input) << OIIO::geterror();
@@ -79,8 +81,19 @@ TEST(Exr, HasLinearColourAndDepth) {
 }
 
 TEST(Exr, HasNoDepthWhereNoneIsKnown) {
-    Read const read = read_back(coloured(1, 1), {});
+    Read const read = read_back(coloured(1, 1), std::vector<float>{});
     EXPECT_EQ(read.names, (std::vector<std::string>{"R", "G", "B"}));
+}
+
+TEST(Exr, KeepsRadianceAboveWhite) {
+    FloatImage radiance(2, 1);
+    radiance.at(0, 0) = {0, 0.25f, 1e6f};
+    radiance.at(1, 0) = {3, 2, 1};
+    Read const read = read_back(radiance);
+    ASSERT_EQ(read.names, (std::vector<std::string>{"R", "G", "B"}));
+    for (int x = 0; x < 2; ++x) {
+        EXPECT_EQ(Vec3(read.value("R", x, 0), read.value("G", x, 0), read.value("B", x, 0)), radiance.at(x, 0));
+    }
 }
 
 } // namespace

@@ -5,7 +5,8 @@
 
 namespace framelet::bench {
 
-std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips) {
+std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips,
+                                             std::filesystem::path const& environment) {
     auto loaded = std::make_unique<BenchScene>();
     loaded->file = file;
     loaded->name = file.stem().string();
@@ -15,7 +16,8 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     }
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
-    loaded->render_scene = std::make_unique<RenderScene>(loaded->scene, std::nullopt);
+    loaded->render_scene = std::make_unique<RenderScene>(
+        loaded->scene, environment.empty() ? std::nullopt : std::optional(Environment::load(environment)));
     loaded->posed = std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene);
     loaded->pose = loaded->posed->pose_of(0);
     loaded->scene_camera = loaded->scene.cameras.empty() ? none : 0;

@@ -158,6 +158,24 @@ void add_gate_options(CLI::App& verb, VerbOptions& options) {
     verb.add_flag("--write", options.write_gate, "Write the figures anew");
 }
 
+void add_reference_picture_options(CLI::App& verb, VerbOptions& options) {
+    ReferencePictureOptions& picture = options.reference_picture;
+    verb.add_option("--output", picture.output, "Picture as viewers show it (.png), or radiance (.exr)")
+        ->capture_default_str();
+    verb.add_option("--camera", picture.camera, "Camera file, as framelet-client takes it")->check(CLI::ExistingFile);
+    verb.add_option("--environment", picture.environment, "Map that lights the scene")->check(CLI::ExistingFile);
+    verb.add_option("--paths", picture.paths.paths, "Paths of each pixel")
+        ->check(CLI::Range(1, 1 << 24))
+        ->capture_default_str();
+    verb.add_option("--sun-size", picture.sun_degrees, "Diameter of suns, degrees; 0: hard shadows")
+        ->check(number_in(0.0, 90.0))
+        ->capture_default_str();
+    verb.add_option("--lamp-size", picture.lamp_metres, "Diameter of point and spot lights, metres; 0: hard shadows")
+        ->check(number_in(0.0, 1e6))
+        ->capture_default_str();
+    verb.add_flag("--direct", picture.direct, "As the server shades it, without paths");
+}
+
 void add_report_options(CLI::App& verb, VerbOptions& options) {
     ReportOptions& report = options.report;
     verb.add_option("--folder", report.folder, "Keeps each run's figures: what is there is not run again")

@@ -9,6 +9,7 @@
 #include <thread>
 #include <vector>
 
+#include "tests/evaluation/reference_picture.h"
 #include "tests/evaluation/report/report_runs.h"
 #include "tests/evaluation/study.h"
 
@@ -45,6 +46,7 @@ struct VerbOptions {
     // The options below belong to one verb each.
     std::vector<int> table_runs;
     std::vector<std::string> without; ///< parts that the ablation leaves out
+    ReferencePictureOptions reference_picture; ///< for `reference`
     ReportOptions report;
     std::vector<std::string> live_scenes, clock_scenes; ///< files or names, for the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
@@ -78,6 +80,7 @@ void add_compare_options(CLI::App& verb, VerbOptions& options);
 void add_ablation_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_gate_options(CLI::App& verb, VerbOptions& options);
+void add_reference_picture_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

@@ -163,6 +163,13 @@ json answer_pauses(VerbOptions& options) {
     return measure_pauses(study.scenes, options.quick ? 12 : 100, pauses, study.charts);
 }
 
+json answer_reference(VerbOptions& options) {
+    StudyOptions const& study = options.study;
+    options.reference_picture.paths.seed = static_cast<std::uint32_t>(study.run.seed);
+    return write_reference_picture(study.scenes.front(), study.run.viewport, study.run.start,
+                                   options.reference_picture);
+}
+
 json answer_report(VerbOptions& options) {
     choose_runs(options);
     choose_programs(options);
@@ -242,6 +249,11 @@ std::span<Verb const> verbs() {
                     "vehicle_flyby"},
          .usual = screen,
          .quick = half_screen},
+        {.name = "reference",
+         .question = "What a scene looks like by paths of light: one picture",
+         .answer = answer_reference,
+         .scenes = chase,
+         .add_options = add_reference_picture_options},
         {.name = "calibrate",
          .question = "What every stage costs on this machine",
          .answer = answer_calibrate,

@@ -8,6 +8,8 @@
 #include <glm/geometric.hpp>
 #include <tbb/parallel_for.h>
 
+#include "server/render/light/sphere_sampling.h"
+
 namespace framelet {
 namespace {
 
@@ -41,23 +43,6 @@ FloatImage halved(FloatImage const& from) {
     return out;
 }
 
-/// An orthonormal basis whose third vector is the unit vector `n` ([Duff 2017]).
-Mat3 frame_about(Vec3 const& n) {
-    float const s = std::copysign(1.0f, n.z);
-    float const a = -1 / (s + n.z);
-    float const b = n.x * n.y * a;
-    return Mat3(Vec3(1 + s * n.x * n.x * a, s * b, -s * n.x), Vec3(b, s + n.y * n.y * a, -n.y), n);
-}
-
-float radical_inverse(std::uint32_t bits) {
-    bits = (bits << 16) | (bits >> 16);
-    bits = ((bits & 0x00ff00ffu) << 8) | ((bits & 0xff00ff00u) >> 8);
-    bits = ((bits & 0x0f0f0f0fu) << 4) | ((bits & 0xf0f0f0f0u) >> 4);
-    bits = ((bits & 0x33333333u) << 2) | ((bits & 0xccccccccu) >> 2);
-    bits = ((bits & 0x55555555u) << 1) | ((bits & 0xaaaaaaaau) >> 1);
-    return static_cast<float>(bits >> 8) * 0x1p-24f;
-}
-
 /// One direction of a lobe about +Z.
 struct LobeSample {
     Vec3 direction; ///< unit
@@ -71,7 +56,7 @@ std::vector<LobeSample> ggx_lobe(float roughness, int count) {
     float total = 0;
     for (int i = 0; i < count; ++i) {
         float const e1 = (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
-        float const phi = 2 * pi * radical_inverse(static_cast<std::uint32_t>(i));
+        float const phi = 2 * pi * unit_fraction(reversed_bits(static_cast<std::uint32_t>(i)));
         float const cosine = std::sqrt((1 - e1) / (1 + (alpha * alpha - 1) * e1)); // of the half vector
         float const sine = std::sqrt(std::max(0.0f, 1 - cosine * cosine));
         Vec3 const half(sine * std::cos(phi), sine * std::sin(phi), cosine);

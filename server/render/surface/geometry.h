@@ -38,6 +38,9 @@ struct WorldPlacement {
 /// Opacity at a point of a triangle: base colour's alpha, map and vertex colour multiplied.
 float alpha_at(Geometry const& geometry, std::uint32_t triangle, float u, float v);
 
+/// Share of light that enters a transmissive surface from straight ahead: 4% are reflected.
+inline constexpr float entering_share = 0.96f;
+
 /// Share of light that goes straight through a see-through surface, per colour.
 Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u, float v);
 

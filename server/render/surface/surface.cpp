@@ -202,7 +202,7 @@ Vec3 transmittance_at(Geometry const& geometry, std::uint32_t triangle, float u,
         transmission *=
             material.transmission_map.sample(uv_of(geometry, point, material.transmission_map.uv_set()), {}).r;
     }
-    return Vec3(1 - presence) + tint * (presence * transmission * 0.96f); // 4% are reflected
+    return Vec3(1 - presence) + tint * (presence * transmission * entering_share);
 }
 
 Vec3 offset_from_surface(Vec3 const& position, Vec3 const& normal, float largest) {

@@ -140,7 +140,8 @@ void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lob
         float const transmission = s.transmission[i];
         float const alpha = s.alpha[i];
         float const away = 1 - std::min(lobes.normal_view[i], 1.0f);
-        float const entering = 0.96f * (1 - (away * away) * (away * away) * away); // [Schlick 1994] with f0 = 0.04
+        float const entering =
+            entering_share * (1 - (away * away) * (away * away) * away); // [Schlick 1994] with f0 = 0.04
         Vec3 const tint = s.base_color.get(i) * (transmission * entering);
         out.passed.set(i, Vec3(1 - alpha) + tint * alpha);
         lobes.diffuse.set(i, lobes.diffuse.get(i) * (1 - transmission));

@@ -108,6 +108,11 @@ void shade(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask a
 
 } // namespace
 
+void continue_behind(HitPacket const& hits, LaneMask passed, LaneMask culled, RayPacket& rays) {
+    for_each_lane(passed, [&](int i) { rays.near[i] = hits.t[i] * (1 + 0x1p-21f) + 1e-30f; });
+    for_each_lane(culled, [&](int i) { rays.near[i] = std::max(rays.near[i], hits.t[i] * (1 - 0x1p-18f)); });
+}
+
 void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footprint const& footprint, int bounces,
            TracedPacket& out) {
     Compositing state;
@@ -144,10 +149,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
             }
         }
         LaneMask const culled = hit & ~present;
-        // A ray goes on just behind a see-through surface. At one that is seen from behind it goes on from just before
-        // it, since many files put a second triangle the other way round into the same place.
-        for_each_lane(passed, [&](int i) { rays.near[i] = hits.t[i] * (1 + 0x1p-21f) + 1e-30f; });
-        for_each_lane(culled, [&](int i) { rays.near[i] = std::max(rays.near[i], hits.t[i] * (1 - 0x1p-18f)); });
+        continue_behind(hits, passed, culled, rays);
         active = passed | culled;
         behind = EmbreeScene::Behind::passes;
     }

@@ -20,6 +20,11 @@ struct TracedPacket {
     std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
 };
 
+/// Moves the start of rays that go on in the same direction: just behind a see-through surface (`passed`), and from
+/// just before one that is seen from behind (`culled`), since many files put a second triangle the other way round into
+/// the same place.
+void continue_behind(HitPacket const& hits, LaneMask passed, LaneMask culled, RayPacket& rays);
+
 /// Traces the lanes of `active`; the others are left as they are. `rays.near` is moved along where rays continue.
 void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footprint const& footprint, int bounces,
            TracedPacket& out);

@@ -1,0 +1,25 @@
+// What is asked of paths of light.
+#pragma once
+
+#include <cstdint>
+
+namespace framelet {
+
+/// Sizes of lights that a scene file does not tell. 0: hard.
+struct LampSizes {
+    float sun = 0; ///< angular radius of directional lights, radians
+    float lamp = 0; ///< radius of point and spot lights, metres
+};
+
+/// By which rays light with a size (lamps, emissive triangles, environment) is found. All agree in the mean.
+enum class LightRays { both, to_lights, by_surface };
+
+struct PathOptions {
+    int paths = 64; ///< of each sample
+    std::uint32_t seed = 0;
+    LampSizes sizes{};
+    LightRays light_rays = LightRays::both;
+    bool lambertian = false; ///< surfaces reflect base colour * (1 - metallic) and have no gloss: for known answers
+};
+
+} // namespace framelet

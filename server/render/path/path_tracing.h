@@ -1,0 +1,38 @@
+// Follows paths of light through a scene: the reference for all other light. In: rays, what they cover, random numbers.
+// Out: unbiased estimates of radiance.
+//
+// Simulated: any number of diffuse and glossy bounces; light of suns and lamps (hard, or with a size), emissive
+// triangles, the environment as far as nothing stands before it; cut-outs, alpha blending and transmission, straight
+// through, as shadow rays and the direct renderer have them. Unlit surfaces send their colour to whatever sees them.
+// Not simulated: caustics of lights without a size, refraction, volumes, subsurface scattering. Not counted: occlusion
+// maps and the share of the default sky that reaches surfaces (`Environment::default_sky`), which stand for shadows
+// that are traced here; highlights of hard lights are as wide as `sharpest_highlight`, as in brdf.h.
+#pragma once
+
+#include "server/render/path/area_lights.h"
+#include "server/render/path/path_options.h"
+#include "server/render/path/sky_table.h"
+
+namespace framelet {
+
+/// What paths sample of a scene in its present pose. The scene must stay as it is while this is used.
+struct PathScene {
+    explicit PathScene(PreparedScene const& prepared)
+        : scene(prepared), area_lights(prepared), sky(prepared.environment) {}
+
+    PreparedScene const& scene;
+    AreaLights area_lights;
+    SkyTable sky;
+};
+
+/// The random numbers of sixteen paths. The first pair of dimensions is the caller's, for the point of the picture.
+struct PathNumbers {
+    LaneIndices pixel_seed, sample;
+};
+
+/// Sets the radiance that comes along each ray of `active`, one path a lane: finite, >= 0. `rays` is scratch
+/// afterwards.
+void trace_paths(PathScene const& scene, PathOptions const& options, RayPacket& rays, LaneMask active,
+                 Footprint footprint, PathNumbers const& numbers, LaneVec3& radiance);
+
+} // namespace framelet
