@@ -115,20 +115,19 @@ template <bool inside>
 void sample_column(WarpPatch const& patch, float x, float y, int count, CandidateColumn& out) {
     WideFloats const column = x + __builtin_convertvector(wide_column, WideFloats);
     WideFloats const row = y + __builtin_convertvector(wide_row, WideFloats);
-    auto const first = [&](std::size_t i) { return (patch.at[i] + row * patch.dy[i]) + column * patch.dx[i]; };
-    constexpr auto step = static_cast<float>(wide_rows);
-    Homogeneous at{first(0), first(1), first(2)};
-    WideFloats depth = (patch.inverse_depth + row * patch.inverse_depth_dy) + column * patch.inverse_depth_dx;
+    // Each row by itself: sums from row to row round otherwise where a register has more rows.
+    auto const row_of = [&](std::size_t i) { return row + static_cast<float>(i * std::size_t{wide_rows}); };
+    auto const at = [&](std::size_t i, WideFloats of_row) {
+        return (patch.at[i] + of_row * patch.dy[i]) + column * patch.dx[i];
+    };
     WideFloats const zero{};
     WideInts const in_box = (column >= 0) & (column < static_cast<float>(patch.box.width()));
     // Each step is done for all rows before the next one: the steps of one row wait for each other.
     std::array<SamplePositions, std::tuple_size_v<CandidateColumn>> positions;
     auto const last = static_cast<std::size_t>(count);
     for (std::size_t i = 0; i < last; ++i) {
-        positions[i] = find_positions<inside>(at, patch, in_box);
-        at.u += step * patch.dy[0];
-        at.v += step * patch.dy[1];
-        at.inverse_z += step * patch.dy[2];
+        WideFloats const at_row = row_of(i);
+        positions[i] = find_positions<inside>({at(0, at_row), at(1, at_row), at(2, at_row)}, patch, in_box);
     }
     if constexpr (!inside && wide_rows > 1) { // rows may be above the box or below it
         auto const leave_out = [&](SamplePositions& some, WideInts flags) {
@@ -141,8 +140,8 @@ void sample_column(WarpPatch const& patch, float x, float y, int count, Candidat
     for (std::size_t i = 0; i < last; ++i) {
         interpolate(static_cast<std::int32_t>(patch.layer << 24), patch, positions[i],
                     look_up(patch, positions[i].corner), out[i]);
-        out[i].inverse_depth = larger(depth, zero);
-        depth += step * patch.inverse_depth_dy;
+        out[i].inverse_depth =
+            larger((patch.inverse_depth + row_of(i) * patch.inverse_depth_dy) + column * patch.inverse_depth_dx, zero);
     }
 }
 

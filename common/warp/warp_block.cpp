@@ -104,12 +104,12 @@ bool merge(Candidate const& candidate, std::int32_t group, float tolerance, std:
 bool is_hidden(WarpPatch const& patch, float x, float y, int column, int first_row, int count, Layers const& layers) {
     WideFloats const from_left = x + __builtin_convertvector(wide_column, WideFloats);
     WideFloats const from_top = y + __builtin_convertvector(wide_row, WideFloats);
-    WideFloats depth = (patch.inverse_depth + from_top * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
     WideInts shows{};
     for (int i = 0; i < count; ++i) {
-        std::size_t const at = index_of(column, first_row + i * wide_rows);
-        shows |= ~is_hidden(depth, patch.tolerance, patch.group, at, layers);
-        depth += static_cast<float>(wide_rows) * patch.inverse_depth_dy;
+        WideFloats const row = from_top + static_cast<float>(i * wide_rows);
+        WideFloats const depth =
+            (patch.inverse_depth + row * patch.inverse_depth_dy) + from_left * patch.inverse_depth_dx;
+        shows |= ~is_hidden(depth, patch.tolerance, patch.group, index_of(column, first_row + i * wide_rows), layers);
     }
     return !any_lane(shows);
 }

@@ -15,7 +15,7 @@ constexpr std::size_t least_bytes = 4 * megabyte;
 /// Pieces for each cell of the picture, over all moments, and as many again for samples on their way to becoming some.
 /// They are a measured bound of scenes with much detail: of a picture at rest, and of a flight that is rendered whole
 /// ten times a second.
-constexpr std::size_t pieces_per_cell = 16;
+constexpr std::size_t pieces_per_cell = 17;
 
 std::string text_of(std::size_t bytes) {
     return std::to_string((bytes + megabyte - 1) / megabyte);
