@@ -117,7 +117,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
     app.add_option(
            "--session-memory", options.server.session_megabytes,
-           "Most memory for the pictures of all viewers together: about 200 bytes a pixel and 40 MB each; a viewer "
+           "Most memory for the pictures of all viewers together: about 210 bytes a pixel and 40 MB each; a viewer "
            "whose picture does not fit is refused")
         ->type_name("MB")
         ->check(number_in(1, 1 << 20))
