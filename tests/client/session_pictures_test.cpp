@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <malloc.h>
 
+#include "common/picture/reconstruction.h"
 #include "tests/picture/fake_canvas.h"
+#include "tests/picture/moved_room.h"
 #include "tests/picture/synthetic_framelets.h"
 
 namespace framelet {
@@ -82,6 +84,41 @@ TEST(PictureMaker, AtRestACameraOfTheSceneIsWhereItsPictureWasTaken) {
     EXPECT_TRUE(maker.is_exact());
     at_time(shown, 0.6 / body_keys_per_second);
     EXPECT_NEAR(maker.last_shown().camera.position.x, 0.6, 1e-4) << "by its track";
+}
+
+TEST(PictureMaker, WhatComesAtRestShowsAsItIsBeforeAllHasCome) {
+    AnalyticScene const scene = moving_room();
+    ImagePlane const room_plane(viewport);
+    auto const rendered = [&](SceneTime time, std::vector<Tile> const& tiles) {
+        Batch batch = scene.batch(room_plane, 1, front(), time, tiles);
+        batch.view.number = 1;
+        return batch;
+    };
+    Shown shown;
+    shown.view = {1, front(), viewport, 1};
+    shown.request.camera = front();
+    std::vector<Tile> const all = visible_tiles(room_plane, room_plane.pixel_depth());
+    Batch first = rendered(0, all);
+    first.tracks.push_back(moving_track());
+    shown.insert(first);
+    shown.insert(rendered(0.5, all));
+    at_time(shown, 1); // where it stops
+    std::vector<Tile> finest = visible_tiles(room_plane, room_plane.max_depth());
+    int const half = viewport.width / 2;
+    std::erase_if(finest, [&](Tile tile) { return room_plane.tile_rect(tile).left >= half; });
+    Batch const still = rendered(1, finest);
+    shown.insert(still);
+    at_time(shown, 1);
+    FrameletCache exact(room_plane);
+    exact.insert(still);
+    Picture expected(viewport.width, viewport.height);
+    reconstruct_all(exact, expected);
+    int wrong = 0;
+    for (int y = 0; y < viewport.height; ++y) {
+        auto const end = 4 * (half - FrameletCache::block_side); // outlines are filtered across the border
+        wrong += std::equal(expected.row(y), expected.row(y) + end, shown.picture.row(y)) ? 0 : 1;
+    }
+    EXPECT_EQ(wrong, 0);
 }
 
 TEST(PictureMaker, WhatIsNotToBeShownYetWaits) {

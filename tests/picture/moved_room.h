@@ -24,6 +24,23 @@ inline AnalyticScene room() {
     return scene;
 }
 
+/// The poses of a body that goes to the right, a metre a second.
+inline BodyTrack moving_track() {
+    BodyTrack track{5, 0, {}};
+    for (int i = 0; i <= 4 * body_keys_per_second; ++i) {
+        track.keys.push_back({Vec3(static_cast<float>(i) / body_keys_per_second, 0, 0), {1, 0, 0, 0}, Vec3(1)});
+    }
+    return track;
+}
+
+/// The room whose board is that body.
+inline AnalyticScene moving_room() {
+    AnalyticScene scene = room();
+    scene.motions.extend(moving_track());
+    scene.quads[2].body = 5;
+    return scene;
+}
+
 struct Shown {
     Picture picture{viewport.width, viewport.height};
     std::vector<float> inverse_depth;

@@ -12,18 +12,6 @@ namespace {
 ImagePlane const plane(viewport);
 std::vector<Tile> const all_tiles = visible_tiles(plane, plane.pixel_depth());
 
-/// The room whose board goes to the right, a metre a second.
-AnalyticScene moving_room() {
-    AnalyticScene scene = room();
-    BodyTrack track{5, 0, {}};
-    for (int i = 0; i <= 4 * body_keys_per_second; ++i) {
-        track.keys.push_back({Vec3(static_cast<float>(i) / body_keys_per_second, 0, 0), {1, 0, 0, 0}, Vec3(1)});
-    }
-    scene.motions.extend(track);
-    scene.quads[2].body = 5;
-    return scene;
-}
-
 Batch rendered(AnalyticScene const& scene, std::uint64_t number, SceneTime time, std::vector<Tile> const& tiles) {
     Batch batch = scene.batch(plane, number, front(), time, tiles);
     batch.view.number = 1; // it is the same camera

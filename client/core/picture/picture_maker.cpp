@@ -141,6 +141,13 @@ void PictureMaker::count_refreshes(DrawnOver what) {
     }
 }
 
+/// True where the newest batch is of the very camera and time that were shown last and are to be shown again: all that
+/// comes from now on is of them.
+bool PictureMaker::is_at_rest(PictureRequest const& request, SceneTime time) const {
+    return shown_pixels_ != nullptr && last_.time == time && batch_time_ == time &&
+           last_.camera == batch_view_.camera && wanted_camera(request, time) == batch_view_.camera;
+}
+
 bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::vector<PixelRect>& changed,
                         BlockCanvas* canvas) {
     changed.clear();
@@ -155,7 +162,7 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
     bool const shows_all = request.is_settled || !settings_.reproject;
     auto const waits = [&](Batch const& batch) { return !shows_all && batch.shown_from > time; };
     take_waiting(static_cast<std::size_t>(std::ranges::find_if(waiting_, waits) - waiting_.begin()));
-    if (shows_all) {
+    if (shows_all || is_at_rest(request, time)) {
         settle();
     }
     Viewport const size = viewport();

@@ -100,6 +100,7 @@ private:
     void settle();
     void count_refreshes(DrawnOver what);
     SceneTime wanted_time(PictureRequest const& request);
+    bool is_at_rest(PictureRequest const& request, SceneTime time) const;
     Camera wanted_camera(PictureRequest const& request, SceneTime time) const;
 
     PictureSettings settings_;
