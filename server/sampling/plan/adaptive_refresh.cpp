@@ -120,7 +120,7 @@ double AdaptiveRefresh::planned_together(RefreshInput const& input, RefreshPlan 
     if (!plan.moment.moves_samples) {
         return 0;
     }
-    return moments_.mirror().camera_stands() ? 0.2 : 0.06;
+    return moments_.mirror().camera_stands() ? 0.14 : 0.06;
 }
 
 /// Plans a cycle where what the viewer holds shows the moment worst; of a picture that stands, what it lacks.
