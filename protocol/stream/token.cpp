@@ -29,10 +29,6 @@ void fill_randomly(unsigned char* bytes, std::size_t count) {
     }
 }
 
-/// How long a pipe may take to say its first line: a program that makes the token needs a moment, and one that says
-/// nothing would keep a server from starting for good.
-constexpr std::chrono::seconds patience{5};
-
 struct OpenFile {
     explicit OpenFile(std::filesystem::path const& file)
         : descriptor(::open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC | O_NOCTTY)) {}
@@ -48,7 +44,7 @@ struct OpenFile {
 
 /// The beginning of a file or a pipe: a line, all there is, or more than a line may have. Throws InputError where it
 /// cannot be read; `what` is for its message.
-std::string read_beginning(std::filesystem::path const& file, std::string const& what) {
+std::string read_beginning(std::filesystem::path const& file, std::string const& what, std::chrono::seconds patience) {
     using std::chrono::steady_clock;
     OpenFile const open(file);
     auto const end = steady_clock::now() + patience;
@@ -112,9 +108,9 @@ std::string token_in(std::string line, std::string const& what) {
     return line;
 }
 
-std::string read_token_file(std::filesystem::path const& file) {
+std::string read_token_file(std::filesystem::path const& file, std::chrono::seconds patience) {
     std::string const what = "token file '" + file.string() + "'";
-    std::string const text = read_beginning(file, what);
+    std::string const text = read_beginning(file, what, patience);
     std::string line = text.substr(0, text.find('\n'));
     if (line.find_first_not_of(" \t\r") == std::string::npos) {
         throw InputError(what + " has an empty first line; put the token there");

@@ -2,6 +2,7 @@
 // Out: the token, or whether two are the same. Tokens never stand in messages of errors.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -28,7 +29,8 @@ bool same_token(std::string_view left, std::string_view right);
 std::string token_in(std::string line, std::string const& what);
 
 /// Reads a token: the first line of `file` without the white space around it. InputError where the file cannot be read,
-/// is a pipe out of which no line comes for 5 s, or the line is empty or none of `token_in`.
-std::string read_token_file(std::filesystem::path const& file);
+/// is a pipe out of which no line comes within `patience`, or the line is empty or none of `token_in`. A program that
+/// makes the token needs a moment; one that says nothing would keep a server from starting for good.
+std::string read_token_file(std::filesystem::path const& file, std::chrono::seconds patience = std::chrono::seconds(5));
 
 } // namespace framelet

@@ -2,6 +2,7 @@
 // a log that nobody reads, a terminal that is gone, and arguments that are found to be wrong before the scene is
 // loaded.
 #include <csignal>
+#include <deque>
 #include <thread>
 
 #include <boost/asio/io_context.hpp>
@@ -214,20 +215,24 @@ TEST(Unwelcome, ALogThatNobodyReadsEndsNothing) {
 
 TEST(Unwelcome, APipeInPlaceOfAFileKeepsNoServerFromStarting) {
     TemporaryFolder folder;
-    std::string const pipe = (folder.path() / "pipe").string();
-    ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
     std::string const file = folder.write("file", "no certificate\n");
-    for (std::vector<std::string> const& options : {std::vector<std::string>{"--token-file", pipe},
-                                                    {"--control-token-file", pipe},
-                                                    {"--record-events", pipe},
-                                                    {"--config", pipe},
-                                                    {"--tls-cert", pipe, "--tls-key", file}}) {
-        std::vector<std::string> arguments{scene_file, "--port", "0"};
-        arguments.insert(arguments.end(), options.begin(), options.end());
-        Process server(FRAMELET_SERVER, arguments);
-        EXPECT_EQ(server.wait(patience), 1) << options[0];
-        EXPECT_EQ(lines_in(server.errors()), 1u) << server.errors();
-        EXPECT_NE(server.errors().find(pipe), std::string::npos) << server.errors();
+    std::vector<std::string> const options{"--token-file", "--control-token-file", "--record-events", "--config",
+                                           "--tls-cert"};
+    std::deque<Process> servers; // all at once: some wait a while for a line
+    std::vector<std::string> pipes;
+    for (std::string const& option : options) {
+        pipes.push_back((folder.path() / ("pipe" + option)).string());
+        ASSERT_EQ(::mkfifo(pipes.back().c_str(), 0600), 0);
+        std::vector<std::string> arguments{scene_file, "--port", "0", option, pipes.back()};
+        if (option == "--tls-cert") {
+            arguments.insert(arguments.end(), {"--tls-key", file});
+        }
+        servers.emplace_back(FRAMELET_SERVER, arguments);
+    }
+    for (std::size_t i = 0; i < servers.size(); ++i) {
+        EXPECT_EQ(servers[i].wait(patience), 1) << options[i];
+        EXPECT_EQ(lines_in(servers[i].errors()), 1u) << servers[i].errors();
+        EXPECT_NE(servers[i].errors().find(pipes[i]), std::string::npos) << options[i];
     }
 }
 

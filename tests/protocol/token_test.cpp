@@ -1,5 +1,6 @@
 #include "protocol/stream/token.h"
 
+#include <chrono>
 #include <fstream>
 #include <thread>
 
@@ -21,9 +22,9 @@ protected:
 
     void TearDown() override { std::filesystem::remove(file_); }
     void put(std::string const& content) { std::ofstream(file_, std::ios::binary) << content; }
-    void expect_refused(std::string const& word) {
+    void expect_refused(std::string const& word, std::chrono::seconds patience = std::chrono::seconds(5)) {
         try {
-            read_token_file(file_);
+            read_token_file(file_, patience);
             ADD_FAILURE() << "accepted, should name " << word;
         } catch (InputError const& error) {
             EXPECT_NE(std::string(error.what()).find(word), std::string::npos) << error.what();
@@ -73,9 +74,9 @@ TEST_F(TokenFile, APipeIsReadUpToItsFirstLine) {
 
 TEST_F(TokenFile, APipeThatSaysNothingIsNotWaitedForForGood) {
     ASSERT_EQ(::mkfifo(file_.c_str(), 0600), 0);
-    expect_refused("no line has come out of it");
+    expect_refused("no line has come out of it for 1 s", std::chrono::seconds(1));
     int const pipe = ::open(file_.c_str(), O_RDWR | O_CLOEXEC);
-    expect_refused("no line has come out of it");
+    expect_refused("no line has come out of it for 1 s", std::chrono::seconds(1));
     ::close(pipe);
 }
 
