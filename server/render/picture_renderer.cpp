@@ -9,6 +9,7 @@
 #include "common/error.h"
 #include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/light/luminance.h"
 
 namespace framelet {
 namespace {
@@ -79,7 +80,7 @@ float auto_exposure(RenderScene const& scene, Camera const& camera) {
     for (Framelet const& framelet : framelets) {
         for (std::size_t i = 0; i < framelet_samples; ++i) {
             if (std::isfinite(framelet.depth[i])) {
-                luminances.push_back(0.2126 * framelet.red[i] + 0.7152 * framelet.green[i] + 0.0722 * framelet.blue[i]);
+                luminances.push_back(double(luminance(Vec3(framelet.red[i], framelet.green[i], framelet.blue[i]))));
             }
         }
     }

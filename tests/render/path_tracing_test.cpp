@@ -86,17 +86,19 @@ Scene cube(Material const& walls) {
 TEST(PathTracing, FurnaceIsWhite) {
     struct Case {
         float albedo;
-        int paths;
+        int paths, sure_bounces;
         float tolerance;
     };
-    for (Case const& c : {Case{0, 1024, 1e-3f}, Case{0.2f, 8192, 1e-3f}, Case{0.5f, 131072, 1e-3f},
-                          Case{0.9f, 131072, 5e-3f}}) { // long paths: three times the noise that roulette leaves
+    // Without roulette each path sums up to 1 - albedo^bounces; with it, three times the noise is allowed.
+    for (Case const& c : {Case{0, 1024, 4, 1e-3f}, Case{0.2f, 8192, 4, 1e-3f}, Case{0.5f, 131072, 4, 1e-3f},
+                          Case{0.9f, 131072, 4, 5e-3f}, Case{0.9f, 8192, 100, 1e-3f}}) {
         Scene const scene = cube(glowing(Vec3(c.albedo), Vec3(1 - c.albedo)));
         RenderScene const ready(scene, black());
         PathScene const paths(ready.prepared());
         for (LightRays const light_rays : {LightRays::both, LightRays::by_surface}) {
             PathOptions options = lambertian(c.paths);
             options.light_rays = light_rays;
+            options.sure_bounces = c.sure_bounces;
             Vec3 const seen = look(paths, {0.3f, 0.6f, 0.4f}, glm::normalize(Vec3(0.3f, -1, 0.2f)), options);
             EXPECT_NEAR(seen.g, 1, c.tolerance) << c.albedo << " " << static_cast<int>(light_rays);
         }
@@ -366,7 +368,7 @@ Estimate estimate(PathScene const& paths, Vec3 origin, Vec3 direction, PathOptio
     return {mean, std::sqrt(std::max(squares / seeds - mean * mean, 0.0) / (seeds - 1))};
 }
 
-/// A room that is open at the front, with a lamp that has a size, a glowing square and a sky with a bright spot.
+/// A room that is open at the front, with a lamp, a spot, a glowing square and a sky with a bright spot.
 Scene room(float metallic, float roughness) {
     Scene scene;
     Material walls = matte(Vec3(0.7f));
@@ -381,6 +383,11 @@ Scene room(float metallic, float roughness) {
     Light lamp;
     lamp.intensity = 0.3f;
     add_light(scene, lamp, {0.7f, 0.5f, 0.5f}, {0, -1, 0});
+    Light spot;
+    spot.type = LightType::spot;
+    spot.intensity = 0.2f;
+    spot.outer_cone = 0.6f;
+    add_light(scene, spot, {0.3f, 0.6f, 0.6f}, {-0.3f, -1, -0.2f});
     return scene;
 }
 
@@ -395,13 +402,16 @@ Environment spotted_sky() {
 }
 
 TEST(PathTracing, LightIsTheSameHoweverItIsFound) {
-    for (float const roughness : {0.35f, 1.0f}) {
+    struct Case {
+        float roughness, lamp_radius;
+    };
+    for (auto const& [roughness, lamp_radius] : {Case{0.35f, 0.1f}, Case{1, 0.1f}, Case{1, 0}}) {
         Scene const scene = room(roughness < 1 ? 1.0f : 0.0f, roughness);
         RenderScene const ready(scene, spotted_sky());
         PathScene const paths(ready.prepared());
         PathOptions options;
         options.paths = 4096;
-        options.sizes.lamp = 0.1f;
+        options.sizes.lamp = lamp_radius;
         for (Vec3 const& to : {Vec3(-0.2f, -0.5f, -1), Vec3(0.3f, -1, -0.4f)}) {
             auto const estimate_by = [&](LightRays by) {
                 options.light_rays = by;
@@ -416,6 +426,78 @@ TEST(PathTracing, LightIsTheSameHoweverItIsFound) {
             }
             EXPECT_LT(both.error, 0.01 * both.mean);
         }
+    }
+}
+
+/// A closed room whose lamp is so near to a small plate that half of its light falls there first.
+struct RoomWithLitPlate {
+    static constexpr float albedo = 0.5f, candela = 3;
+    std::vector<Wall> sides; ///< of all surfaces; their normals are where they are seen from
+    Scene scene = cube(matte(Vec3(albedo)));
+
+    RoomWithLitPlate() {
+        scene.materials[0].double_sided = true;
+        Wall const plate{{0.4f, 0.7f, 0.45f}, {0, 0, 0.1f}, {0.1f, 0, 0}};
+        add(scene, quad(plate.corner, plate.side_u, plate.side_v, 0));
+        for (Wall const& wall : cube_walls()) {
+            sides.push_back(wall);
+        }
+        sides.push_back(plate);
+        sides.push_back({plate.corner, plate.side_v, plate.side_u});
+        Light lamp;
+        lamp.intensity = candela;
+        add_light(scene, lamp, {0.44f, 0.71f, 0.5f}, {0, -1, 0});
+    }
+};
+
+TEST(PathTracing, BouncesFindWhatLampsLightFromNear) {
+    RoomWithLitPlate const room;
+    RenderScene const ready(room.scene, black());
+    PathScene const paths(ready.prepared());
+    for (float const size : {0.0f, 0.01f}) {
+        PathOptions options = lambertian(1024);
+        options.sizes.lamp = size;
+        Estimate const wall = estimate(paths, {0.5f, 0.5f, 0.5f}, {1, 0.2f, 0.1f}, options);
+        EXPECT_LT(wall.error * std::sqrt(8.0), 0.05 * wall.mean) << size; // of each estimate
+    }
+}
+
+TEST(PathTracing, ClosedRoomKeepsTheLightOfItsLamp) {
+    RoomWithLitPlate const room;
+    RenderScene const ready(room.scene, black());
+    PathScene const paths(ready.prepared());
+    for (float const size : {0.0f, 0.01f}) {
+        double reflected = 0; // lumen
+        for (Wall const& side : room.sides) {
+            double const area = double(glm::length(side.normal()));
+            constexpr std::uint32_t points = 1024;
+            for (std::uint32_t i = 0; i < points; ++i) {
+                Vec2 const random = random_pair(9, i, 0);
+                Vec3 const normal = glm::normalize(side.normal());
+                PathOptions options = lambertian(16);
+                options.sizes.lamp = size;
+                options.seed = i;
+                Vec3 const from = side.at(random.x, random.y) + normal * 1e-3f;
+                reflected += double(look(paths, from, -normal, options).g) * double(pi) * area / points;
+            }
+        }
+        // All surfaces together reflect this share of what the lamp sends, and of what they reflect themselves.
+        double const expected = double(4 * pi * room.candela * room.albedo / (1 - room.albedo));
+        EXPECT_NEAR(reflected, expected, 0.01 * expected) << size;
+    }
+}
+
+TEST(PathTracing, BacksHideLightHoweverItIsFound) {
+    Scene scene = floor_of(0.5f);
+    add(scene, quad({-50, 1, 50}, {100, 0, 0}, {0, 0, -100}, 0)); // a camera below sees through it
+    scene.materials.push_back(glowing(Vec3(0), Vec3(3)));
+    add(scene, quad({-1, 2, -1}, {2, 0, 0}, {0, 0, 2}, 1));
+    RenderScene const ready(scene, Environment::uniform(Vec3(1)));
+    PathScene const paths(ready.prepared());
+    PathOptions options = lambertian(16384);
+    for (LightRays const by : {LightRays::both, LightRays::to_lights, LightRays::by_surface}) {
+        options.light_rays = by;
+        EXPECT_LT(look(paths, {0, 0.5f, 0}, {0, -1, 0}, options).g, 0.02f) << static_cast<int>(by); // from its edge
     }
 }
 

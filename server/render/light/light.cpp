@@ -8,9 +8,6 @@
 namespace framelet {
 namespace {
 
-/// A point light gets no brighter nearer than this, metres: inverse square would have no bound.
-constexpr float nearest = 1e-3f;
-
 float usable(float value, float most) {
     return value > 0 ? std::min(value, most) : 0.0f;
 }
@@ -76,7 +73,7 @@ LaneMask arriving_light(RenderLight const& light, LaneVec3 const& position, Lane
             out.to_light.y[i] = y;
             out.to_light.z[i] = z;
             out.distance[i] = distance;
-            float const bounded = squared > nearest * nearest ? squared : nearest * nearest;
+            float const bounded = squared > lamp_core * lamp_core ? squared : lamp_core * lamp_core;
             float const reach = distance * inverse_range;
             float const window = 1 - (reach * reach) * (reach * reach);
             float const in_range = window > 0 ? window : 0.0f;

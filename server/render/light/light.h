@@ -6,6 +6,9 @@
 
 namespace framelet {
 
+/// A point light gets no brighter nearer than this, metres: inverse square would have no bound.
+inline constexpr float lamp_core = 1e-3f;
+
 struct RenderLight {
     LightType type = LightType::directional;
     Vec3 intensity{0}; ///< candela, or lux for directional lights, per colour

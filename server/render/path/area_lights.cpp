@@ -5,6 +5,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "server/render/light/luminance.h"
 #include "server/render/surface/hit_frame.h"
 
 namespace framelet {
@@ -12,10 +13,6 @@ namespace {
 
 /// Of the material's mean luminance, which every triangle counts as well: none that shines anywhere is left out.
 constexpr float least_share = 0.02f;
-
-float luminance(Vec3 const& v) {
-    return 0.2126f * v.r + 0.7152f * v.g + 0.0722f * v.b;
-}
 
 bool shines(RenderMaterial const& material) {
     return luminance(material.emissive) > 0 && !material.unlit;

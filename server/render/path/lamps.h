@@ -26,6 +26,9 @@ struct LampShine {
     float met_at(Vec3 const& direction) const;
 };
 
+/// One light's shine upon a point with this normal.
+LampShine shine_of(RenderLight const& light, LampSizes sizes, Vec3 const& position, Vec3 const& normal);
+
 /// All lights' shine upon a point with this normal; returns the sum of their weights.
 float shine_of_lamps(std::span<RenderLight const> lights, LampSizes sizes, Vec3 const& position, Vec3 const& normal,
                      std::vector<LampShine>& out);

@@ -19,6 +19,7 @@ struct PathOptions {
     std::uint32_t seed = 0;
     LampSizes sizes{};
     LightRays light_rays = LightRays::both;
+    int sure_bounces = 4; ///< after which roulette begins to end paths
     bool lambertian = false; ///< surfaces reflect base colour * (1 - metallic) and have no gloss: for known answers
 };
 

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "server/render/light/brdf.h"
+#include "server/render/light/luminance.h"
 #include "server/render/path/lamps.h"
 #include "server/render/path/path_random.h"
 #include "server/render/path/scattering.h"
@@ -17,16 +18,25 @@ namespace {
 
 /// Surfaces that a path may meet. Roulette ends nearly all long before.
 constexpr int most_steps = 1000;
-/// Bounces after which roulette begins, and the largest chance to go on that it leaves.
-constexpr int sure_bounces = 4;
+/// The largest chance to go on that roulette leaves.
 constexpr float most_survival = 0.95f;
+/// See-through surfaces that a ray from a lamp may pass.
+constexpr int most_layers = 8;
 
 /// Pairs of random numbers that each step of a path takes.
-enum Pair : std::uint32_t { roulette, choices, lamp_point, light_point, sky_point, bounce, lobe, pairs };
-
-float mean(Vec3 const& v) {
-    return (v.r + v.g + v.b) * (1.0f / 3.0f);
-}
+enum Pair : std::uint32_t {
+    roulette,
+    choices,
+    lamp_point,
+    light_point,
+    sky_point,
+    bounce,
+    lobe,
+    lamp_ray,
+    lamp_way,
+    lamp_aside,
+    pairs
+};
 
 /// Weight of an estimate whose direction could have been found in another way as well: power heuristic ([Veach 1997]).
 float power_share(float own, float other) {
@@ -44,7 +54,7 @@ public:
         : paths_(scene), scene_(scene.scene), options_(options), rays_(rays), footprint_(footprint), numbers_(numbers),
           radiance_(radiance) {
         throughput_.fill(Vec3(1));
-        density_.fill(0);
+        density_.fill(INFINITY);
     }
 
     void follow(LaneMask active) {
@@ -57,6 +67,7 @@ public:
                 add_met_lamps(active, hit);
             }
             LaneMask const present = make_surfaces(scene_.instances, rays_, hits_, hit, footprint_, surfaces_);
+            note_density(present);
             add_emission(present);
             LaneMask passed = 0;
             LaneMask const scattering = choose_scattering(present, passed);
@@ -65,7 +76,10 @@ public:
                 add_sampled_sky(scattering);
             }
             add_sampled_lamps(scattering);
-            LaneMask const culled = hit & ~present;
+            if (options_.light_rays == LightRays::both && !paths_.lamp_rays.empty()) {
+                add_lit_by_lamps(scattering);
+            }
+            LaneMask const culled = passes_behind(hit & ~present);
             continue_behind(hits_, passed, culled, rays_);
             active = passed | culled | bounce_on(scattering);
             behind = culled != 0 ? EmbreeScene::Behind::passes : EmbreeScene::Behind::stops;
@@ -94,6 +108,25 @@ private:
         return options_.light_rays == LightRays::both ? power_share(light_density, surface_density) : 1.0f;
     }
 
+    /// Weight of what a lamp lights at a point that a bounce has found with this density, 1 / m^2: rays from the lamp
+    /// find it as well.
+    float lit_share(float found, Vec3 const& facet, std::uint32_t lamp, LampShine const& shine) const {
+        float const facing = glm::dot(facet, shine.to_light);
+        if (options_.light_rays != LightRays::both || !(facing > 0)) {
+            return 1;
+        }
+        return power_share(found, paths_.lamp_rays.density(lamp, shine.distance, options_.sizes.lamp) * facing);
+    }
+
+    /// Notes how densely bounces find these surfaces.
+    void note_density(LaneMask present) {
+        for_each_lane(present, [&](int i) {
+            Vec3 const way = surfaces_.position.get(i) - from_.get(i);
+            float const cosine = glm::dot(surfaces_.view.get(i), surfaces_.geometric_normal.get(i));
+            found_[i] = bounced(i) ? density_[i] * cosine / glm::dot(way, way) : INFINITY;
+        });
+    }
+
     void add_sky(LaneMask missed) {
         if (paths_.sky.black()) {
             return;
@@ -117,7 +150,9 @@ private:
             for (LampShine const& lamp : lamps_) {
                 float const at = lamp.sine > 0 && lamp.weight > 0 ? lamp.met_at(rays_.direction.get(i)) : -1.0f;
                 if (at > rays_.near[i] && at <= end) {
-                    float const share = met_share(i, lamp.weight / (sum * lamp.angle()));
+                    auto const number = static_cast<std::uint32_t>(&lamp - lamps_.data());
+                    float const share = met_share(i, lamp.weight / (sum * lamp.angle())) *
+                                        lit_share(from_found_[i], from_facet_.get(i), number, lamp);
                     add(i, throughput_.get(i) * lamp.radiance() * share);
                 }
             }
@@ -133,13 +168,24 @@ private:
             }
             Vec3 const emissive = surfaces_.emissive.get(i);
             if (mean(emissive) > 0) {
-                Geometry const& geometry = scene_.instances[hits_.instance[i]].geometries[hits_.geometry[i]];
+                Geometry const& geometry = geometry_of(hits_, i);
                 float const cosine = glm::dot(surfaces_.view.get(i), surfaces_.geometric_normal.get(i));
                 float const per_angle = hits_.t[i] * hits_.t[i] / std::max(cosine, 1e-6f);
                 float const density = bounced(i) ? paths_.area_lights.density(geometry, hits_.triangle[i]) : 0.0f;
                 add(i, through * emissive * met_share(i, density * per_angle));
             }
         });
+    }
+
+    Geometry const& geometry_of(HitPacket const& hits, int i) const {
+        return scene_.instances[hits.instance[i]].geometries[hits.geometry[i]];
+    }
+
+    /// Lanes that go on behind a back that is not drawn. Those that bounced do so where shadow rays do.
+    LaneMask passes_behind(LaneMask culled) const {
+        return culled & (~bounced_ | lanes_where([&](int i) {
+                   return (culled >> i & 1) != 0 && geometry_of(hits_, i).material->see_through();
+               }));
     }
 
     /// Chooses whether a path goes straight on behind the surface (`passed`) or is scattered by it (returned).
@@ -189,7 +235,7 @@ private:
 
     void aim_shadow(int i, Vec3 const& direction, float distance, Vec3 const& light) {
         shadow_.direction.set(i, direction);
-        shadow_.far[i] = distance * shadow_ray_share;
+        shadow_.far[i] = distance;
         light_.set(i, throughput_.get(i) * light);
     }
 
@@ -211,13 +257,16 @@ private:
             }
             Scattering const& s = scattering_[static_cast<std::size_t>(i)];
             float const chance = lamp->weight / sum;
+            float const own = lit_share(found_[i], surfaces_.geometric_normal.get(i),
+                                        static_cast<std::uint32_t>(lamp - lamps_.begin()), *lamp);
             if (!(lamp->sine > 0)) {
                 constexpr float least_alpha = sharpest_highlight * sharpest_highlight;
                 Vec3 const reflected = scattered(s, lamp->to_light, least_alpha).reflected;
                 float const cosine = glm::dot(surfaces_.normal.get(i), lamp->to_light);
                 if (cosine > 0) {
                     // `reflected` has the cosine, `arriving` is of a surface that faces the light.
-                    aim_shadow(i, lamp->to_light, lamp->distance, reflected * lamp->arriving / chance);
+                    float const end = std::isinf(lamp->distance) ? INFINITY : lamp->distance - lamp_core;
+                    aim_shadow(i, lamp->to_light, end, reflected * lamp->arriving * (own / chance));
                     aimed |= 1u << i;
                 }
                 return;
@@ -231,7 +280,7 @@ private:
                 float const density = chance / lamp->angle();
                 float const distance = std::isinf(lamp->distance) ? INFINITY : std::max(lamp->met_at(direction), 0.0f);
                 aim_shadow(i, direction, distance,
-                           back.reflected * lamp->radiance() * (found_share(density, back.density) / density));
+                           back.reflected * lamp->radiance() * (own * found_share(density, back.density) / density));
                 aimed |= 1u << i;
             }
         });
@@ -252,7 +301,7 @@ private:
             if (cosine > 1e-6f && squared > 1e-12f && back.density > 0 && mean(point.radiance) > 0 &&
                 above_facet(i, direction)) {
                 float const density = point.density * squared / cosine;
-                aim_shadow(i, direction, distance,
+                aim_shadow(i, direction, distance * shadow_ray_share,
                            back.reflected * point.radiance * (found_share(density, back.density) / density));
                 aimed |= 1u << i;
             }
@@ -276,6 +325,100 @@ private:
         add_unshadowed(aimed);
     }
 
+    /// Follows a ray of a lamp from each lane to one of the surfaces that it lights: `lit_hits_`, and `light_` is what
+    /// is left of the light for the chance of having chosen this one. Returns the lanes that have found one.
+    LaneMask find_lit_points(LaneMask lanes_lit) {
+        HitPacket hits{};
+        LaneFloats chance;
+        for_each_lane(lanes_lit, [&](int i) {
+            Vec2 const chosen = random(i, lamp_ray);
+            lamp_rays_[static_cast<std::size_t>(i)] =
+                paths_.lamp_rays.sample(chosen.x, random(i, lamp_way), random(i, lamp_aside), options_.sizes.lamp);
+            shadow_.origin.set(i, lamp_rays_[static_cast<std::size_t>(i)].origin);
+            shadow_.direction.set(i, lamp_rays_[static_cast<std::size_t>(i)].direction);
+            chance[i] = chosen.y;
+            light_.set(i, Vec3(1));
+        });
+        shadow_.near.fill(0);
+        shadow_.far.fill(INFINITY);
+        LaneMask there = 0;
+        for (int layer = 0; lanes_lit != 0 && layer < most_layers; ++layer) {
+            LaneMask const hit = scene_.bvh.intersect(shadow_, lanes_lit, EmbreeScene::Behind::stops, hits);
+            LaneMask passed = 0;
+            for_each_lane(hit, [&](int i) {
+                Geometry const& geometry = geometry_of(hits, i);
+                Vec3 const behind = geometry.material->see_through()
+                                        ? transmittance_at(geometry, hits.triangle[i], hits.u[i], hits.v[i])
+                                        : Vec3(0);
+                float const to_pass = mean(behind) / (1 + mean(behind));
+                bool const passes = chance[i] < to_pass;
+                light_.set(i, passes ? light_.get(i) * behind / to_pass : light_.get(i) / (1 - to_pass));
+                chance[i] = passes ? chance[i] / to_pass : (chance[i] - to_pass) / (1 - to_pass);
+                passed |= (passes ? 1u : 0u) << i;
+            });
+            for_each_lane(hit & ~passed, [&](int i) {
+                lit_hits_.u[i] = hits.u[i];
+                lit_hits_.v[i] = hits.v[i];
+                lit_hits_.triangle[i] = hits.triangle[i];
+                lit_hits_.geometry[i] = hits.geometry[i];
+                lit_hits_.instance[i] = hits.instance[i];
+                lit_points_.set(i, shadow_.origin.get(i) + shadow_.direction.get(i) * hits.t[i]);
+            });
+            there |= hit & ~passed;
+            continue_behind(hits, passed, 0, shadow_);
+            lanes_lit = passed;
+        }
+        return there;
+    }
+
+    /// Adds the light of points that lamps light, which bounces would rarely meet where these are near to their lamp.
+    void add_lit_by_lamps(LaneMask scattering) {
+        LaneMask const there = find_lit_points(scattering);
+        shadow_.origin = surfaces_.leaving;
+        Footprint footprint{surfaces_.width, surfaces_.spread};
+        for_each_lane(there, [&](int i) {
+            Vec3 const way = lit_points_.get(i) - surfaces_.leaving.get(i);
+            lit_hits_.t[i] = std::max(glm::length(way), 1e-10f);
+            shadow_.direction.set(i, way / lit_hits_.t[i]);
+        });
+        LaneMask const seen = make_surfaces(scene_.instances, shadow_, lit_hits_, there, footprint, lit_);
+        LaneMask aimed = 0;
+        for_each_lane(seen & ~lit_.unlit, [&](int i) {
+            Vec3 const light = light_.get(i) * light_of_lit_point(i);
+            if (mean(light) > 0) {
+                aim_shadow(i, shadow_.direction.get(i), lit_hits_.t[i] * shadow_ray_share, light);
+                aimed |= 1u << i;
+            }
+        });
+        add_unshadowed(aimed);
+    }
+
+    /// What the surface reflects of the light of this lane's lit point, were nothing between: an estimate for all
+    /// lamps.
+    Vec3 light_of_lit_point(int i) const {
+        LampRay const& ray = lamp_rays_[static_cast<std::size_t>(i)];
+        Vec3 const facet = lit_.geometric_normal.get(i);
+        LampShine const shine =
+            shine_of(scene_.lights[ray.lamp], options_.sizes, lit_.position.get(i), lit_.normal.get(i));
+        Vec3 const direction = shadow_.direction.get(i);
+        Scattered const back = scattered(scattering_[static_cast<std::size_t>(i)], direction);
+        float const seen_cosine = glm::dot(lit_.view.get(i), facet);
+        float const lit_cosine = -glm::dot(ray.direction, facet);
+        float const found = back.density * seen_cosine / (lit_hits_.t[i] * lit_hits_.t[i]);
+        float const share = 1 - lit_share(found, facet, ray.lamp, shine);
+        float const density =
+            paths_.lamp_rays.density(ray.lamp, shine.distance, options_.sizes.lamp) * std::max(lit_cosine, 1e-6f);
+        if (!(back.density > 0 && above_facet(i, direction) && seen_cosine > 0 && lit_cosine > 0 && share > 0 &&
+              shine.weight > 0 && density > 0)) {
+            return Vec3(0);
+        }
+        Scattering const s = scattering_of(lit_, i, scene_.split_sum, options_.lambertian);
+        float const least_alpha = shine.sine > 0 ? 0 : sharpest_highlight * sharpest_highlight;
+        Vec3 const reflected = scattered(s, -ray.direction, least_alpha).reflected * shine.arriving;
+        float const per_area = seen_cosine / (lit_hits_.t[i] * lit_hits_.t[i]);
+        return back.reflected * reflected * (lit_.alpha[i] * per_area * share / density);
+    }
+
     /// Starts the next ray of each path; returns the lanes that have one.
     LaneMask bounce_on(LaneMask scattering) {
         LaneMask alive = 0;
@@ -287,7 +430,7 @@ private:
                 return;
             }
             Vec3 through = throughput_.get(i) * back.reflected / back.density;
-            if (step_ >= sure_bounces) {
+            if (step_ >= options_.sure_bounces) {
                 float const survival = std::min(most_survival, std::max({through.r, through.g, through.b}));
                 if (!(random(i, roulette).y < survival)) {
                     return;
@@ -298,6 +441,8 @@ private:
             density_[i] = back.density;
             from_.set(i, surfaces_.position.get(i));
             from_normal_.set(i, surfaces_.normal.get(i));
+            from_facet_.set(i, surfaces_.geometric_normal.get(i));
+            from_found_[i] = found_[i];
             rays_.origin.set(i, surfaces_.leaving.get(i));
             rays_.direction.set(i, direction);
             rays_.near[i] = 0;
@@ -321,13 +466,18 @@ private:
     LaneMask bounced_ = 0; ///< lanes whose ray comes from a surface
     LaneVec3 throughput_;
     LaneFloats density_; ///< of the last bounce's direction, 1 / sr
-    LaneVec3 from_, from_normal_; ///< the point where the last bounce was
+    LaneVec3 from_, from_normal_, from_facet_; ///< the point where the last bounce was
+    LaneFloats found_, from_found_; ///< density with which bounces found the surface and that point, 1 / m^2
     HitPacket hits_{};
     SurfacePacket surfaces_{};
     std::array<Scattering, lanes> scattering_{};
     RayPacket shadow_{};
     LaneVec3 light_{}, transmittance_{};
     std::vector<LampShine> lamps_; ///< scratch
+    std::array<LampRay, lanes> lamp_rays_{};
+    HitPacket lit_hits_{}; ///< of these rays; `t`: distance from the surface
+    LaneVec3 lit_points_{};
+    SurfacePacket lit_{}; ///< as the surface sees it
 };
 
 } // namespace

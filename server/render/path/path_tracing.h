@@ -6,10 +6,13 @@
 // through, as shadow rays and the direct renderer have them. Unlit surfaces send their colour to whatever sees them.
 // Not simulated: caustics of lights without a size, refraction, volumes, subsurface scattering. Not counted: occlusion
 // maps and the share of the default sky that reaches surfaces (`Environment::default_sky`), which stand for shadows
-// that are traced here; highlights of hard lights are as wide as `sharpest_highlight`, as in brdf.h.
+// that are traced here; highlights of hard lights are as wide as `sharpest_highlight`, as in brdf.h. What is nearer to
+// the middle of a hard lamp than `lamp_core` throws no shadow. Backs that are not drawn stop bounces as they stop
+// shadow rays; cameras alone see through them. Slow to converge: caustics, and what emissive triangles light from near.
 #pragma once
 
 #include "server/render/path/area_lights.h"
+#include "server/render/path/lamp_rays.h"
 #include "server/render/path/path_options.h"
 #include "server/render/path/sky_table.h"
 
@@ -18,10 +21,11 @@ namespace framelet {
 /// What paths sample of a scene in its present pose. The scene must stay as it is while this is used.
 struct PathScene {
     explicit PathScene(PreparedScene const& prepared)
-        : scene(prepared), area_lights(prepared), sky(prepared.environment) {}
+        : scene(prepared), area_lights(prepared), lamp_rays(prepared.lights), sky(prepared.environment) {}
 
     PreparedScene const& scene;
     AreaLights area_lights;
+    LampRays lamp_rays;
     SkyTable sky;
 };
 

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
+#include "server/render/light/luminance.h"
 #include "server/render/light/sphere_sampling.h"
 
 namespace framelet {
@@ -17,10 +18,6 @@ constexpr float pi = std::numbers::pi_v<float>;
 constexpr float least_roughness = 0.04f;
 /// Each lobe that is there gets at least this share of the samples: the other's estimate of light stays bounded.
 constexpr float least_chance = 0.1f;
-
-float mean(Vec3 const& v) {
-    return (v.r + v.g + v.b) * (1.0f / 3.0f);
-}
 
 float ggx_distribution(Vec3 const& half, float a2) {
     float const spread = (half.x * half.x + half.y * half.y) + a2 * half.z * half.z;

@@ -6,6 +6,8 @@
 
 #include <glm/geometric.hpp>
 
+#include "server/render/light/luminance.h"
+
 namespace framelet {
 namespace {
 
@@ -72,22 +74,22 @@ void aim_reflections(SurfacePacket const& s, MirrorRays& mirror) {
 
 /// The light of which each lane would get most if nothing were in its way.
 struct StrongestLight {
-    LaneFloats luminance;
+    LaneFloats most; ///< luminance
     LaneIndices lost; ///< its number where it is blocked, else `no_light`
 
     void reset() {
-        luminance.fill(0);
+        most.fill(0);
         for (std::uint32_t& number : lost.lane) {
             number = no_light;
         }
     }
     void add(std::uint32_t number, RenderLight const& light, ArrivingLight const& arriving, LaneMask reached,
              LaneMask blocked) {
-        float const strength = glm::dot(light.intensity, Vec3(0.2126f, 0.7152f, 0.0722f));
+        float const strength = luminance(light.intensity);
         for_each_lane(reached, [&](int i) {
             float const arrives = strength * arriving.irradiance[i];
-            if (arrives > luminance[i]) {
-                luminance[i] = arrives;
+            if (arrives > most[i]) {
+                most[i] = arrives;
                 lost[i] = (blocked >> i & 1) != 0 ? number : no_light;
             }
         });

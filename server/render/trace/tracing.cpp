@@ -6,6 +6,7 @@
 
 #include <glm/geometric.hpp>
 
+#include "server/render/light/luminance.h"
 #include "server/render/surface/surface.h"
 #include "server/render/trace/shading.h"
 
@@ -17,10 +18,6 @@ constexpr int most_layers = 32;
 
 /// A smaller share of the light from behind a surface cannot be seen on a display of 8 bits.
 constexpr float least_throughput = 1.0f / 512;
-
-float mean(Vec3 const& v) {
-    return (v.r + v.g + v.b) * (1.0f / 3.0f);
-}
 
 struct Compositing {
     LaneVec3 throughput; ///< share of the light from behind that is still seen
