@@ -1,5 +1,8 @@
 #include "tests/evaluation/study.h"
 
+#include <cmath>
+#include <string>
+
 #include "client/core/camera/camera_path.h"
 #include "common/error.h"
 #include "tests/evaluation/scene_events.h"
@@ -37,7 +40,7 @@ Subject prepare(std::filesystem::path const& file, StudyOptions const& options) 
         kind += '-' + options.camera.stem().string();
     }
     if (options.orthographic_height > 0) {
-        kind += "-orthographic" + std::to_string(options.orthographic_height);
+        kind += "-orthographic" + std::to_string(std::lround(100 * options.orthographic_height)) + "cm";
     }
     if (!kind.empty()) {
         scene->name += kind;
