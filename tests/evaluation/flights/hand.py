@@ -35,5 +35,6 @@ for i in range(int(SECONDS * RATE) + 1):
     yaw, pitch = angle(i / RATE, 0), angle(i / RATE, 1) + math.radians(8)
     ahead = (-math.sin(yaw) * math.cos(pitch), math.sin(pitch), -math.cos(yaw) * math.cos(pitch))
     target = [round(e + 10 * a, 3) for e, a in zip(EYE, ahead)]
-    keys.append(f'  {{"time": {i / RATE}, "position": {list(EYE)}, "target": {target}, "fov_degrees": 55}}')
-print('{\n "keys": [\n' + ",\n".join(keys) + "\n ]\n}")
+    keys.append(f'{{"time": {i / RATE}, "position": {list(EYE)}, "target": {target}, "fov_degrees": 55}}')
+lines = [", ".join(keys[i:i + 5]) for i in range(0, len(keys), 5)]
+print('{\n "keys": [\n  ' + ",\n  ".join(lines) + "\n ]\n}")
