@@ -98,4 +98,13 @@ struct FanParameters {
 };
 GltfDocument make_fan_scene(FanParameters const& parameters);
 
+/// Things turn behind two panes of glass; beside them lacquer and brass stand against the sun, on which highlights
+/// wander as the camera goes sideways.
+struct GlassParameters {
+    double duration = 4; ///< seconds
+    int turns = 3; ///< within `duration`
+    double drift = 0.9; ///< of the camera: metres to either side
+};
+GltfDocument make_glass_scene(GlassParameters const& parameters);
+
 } // namespace framelet

@@ -82,6 +82,7 @@ std::span<SceneEntry const> scene_table() {
         {"walker", 4, true, [] { return make_walker_scene({.duration = 4}); }},
         {"flag", 4, true, [] { return make_flag_scene({.duration = 4}); }},
         {"fan", 4, true, [] { return make_fan_scene({.duration = 4}); }},
+        {"glass", 4, true, [] { return make_glass_scene({.duration = 4}); }},
     };
     return table;
 }

@@ -21,6 +21,7 @@ struct GltfMaterial {
     double alpha_cutoff = 0; ///< above 0: alpha mask
     bool double_sided = false;
     bool unlit = false; ///< KHR_materials_unlit
+    double transmission = 0; ///< share of what is not reflected that goes straight through, KHR_materials_transmission
 
     bool operator==(GltfMaterial const&) const = default;
 };

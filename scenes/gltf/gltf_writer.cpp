@@ -228,6 +228,10 @@ Json write_material(GltfMaterial const& material, std::set<std::string>& extensi
         extensions.insert("KHR_materials_unlit");
         json["extensions"]["KHR_materials_unlit"] = Json::object();
     }
+    if (material.transmission > 0) {
+        extensions.insert("KHR_materials_transmission");
+        json["extensions"]["KHR_materials_transmission"] = {{"transmissionFactor", material.transmission}};
+    }
     if (material.double_sided) {
         json["doubleSided"] = true;
     }

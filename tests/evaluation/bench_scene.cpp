@@ -1,9 +1,50 @@
 #include "tests/evaluation/bench_scene.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "server/scene/backdrop.h"
 #include "server/scene/scene_import.h"
 
 namespace framelet::bench {
+namespace {
+
+/// Makes every jump of the clip a straight way that takes a 30th of a second, as far as there is so much time before
+/// it.
+void bake(AnimationClip& clip) {
+    constexpr float frame = 1 / 30.0f; // seconds
+    for (AnimationChannel& channel : clip.channels) {
+        if (channel.interpolation != Interpolation::step) {
+            continue;
+        }
+        AnimationChannel baked = channel;
+        baked.interpolation = Interpolation::linear;
+        baked.times.clear();
+        baked.values.clear();
+        auto const add = [&](float time, std::size_t key) {
+            auto const value = channel.values.begin() + static_cast<std::ptrdiff_t>(key) * channel.components;
+            baked.times.push_back(time);
+            baked.values.insert(baked.values.end(), value, value + channel.components);
+        };
+        for (std::size_t key = 0; key < channel.times.size(); ++key) {
+            if (key > 0 && channel.times[key] - frame > channel.times[key - 1]) {
+                add(channel.times[key] - frame, key - 1);
+            }
+            add(channel.times[key], key);
+        }
+        channel = std::move(baked);
+    }
+}
+
+Camera with_lens(Camera camera, BenchScene const& scene) {
+    if (scene.orthographic_height > 0) {
+        camera.projection = Projection::orthographic;
+        camera.vertical_extent = static_cast<float>(scene.orthographic_height);
+    }
+    return camera;
+}
+
+} // namespace
 
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips,
                                              std::filesystem::path const& environment) {
@@ -13,6 +54,8 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->scene = import_scene(file);
     if (clips == Clips::none) {
         loaded->scene.clips.clear();
+    } else if (clips == Clips::baked) {
+        std::ranges::for_each(loaded->scene.clips, bake);
     }
     loaded->clips = default_clips(loaded->scene);
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
@@ -40,11 +83,12 @@ bool same_pose(ScenePose const& a, ScenePose const& b) {
 }
 
 Camera camera_at(BenchScene const& scene, SceneTime time) {
-    return scene.flown ? scene.flown(time) : turned(own_camera_at(scene, time), scene.turn, time);
+    return scene.flown ? with_lens(scene.flown(time), scene) : turned(own_camera_at(scene, time), scene.turn, time);
 }
 
 Camera own_camera_at(BenchScene const& scene, SceneTime time) {
-    return scene.scene_camera == none ? scene.default_camera : scene.posed->camera(scene.scene_camera, time);
+    return with_lens(scene.scene_camera == none ? scene.default_camera : scene.posed->camera(scene.scene_camera, time),
+                     scene);
 }
 
 } // namespace framelet::bench

@@ -26,17 +26,21 @@ struct BenchScene {
     CameraTurn turn; ///< turning added to whichever camera is used
     /// The viewer's own camera, which flies by itself; empty: there is none.
     std::function<Camera(SceneTime)> flown;
+    double orthographic_height = 0; ///< metres; > 0: whichever camera is used is orthographic
     Camera camera; ///< the camera at the time for which the scene was posed last
     float exposure = 1;
     double duration = 0; ///< seconds of animation; 0: nothing moves
     ScenePose pose; ///< the pose for which the scene was posed last
 
     /// Number of the scene's camera that the viewer follows along its track; -1: the camera is the viewer's own.
-    int followed_camera() const { return turn.turns() || flown ? -1 : static_cast<int>(scene_camera); }
+    int followed_camera() const {
+        return turn.turns() || flown || orthographic_height > 0 ? -1 : static_cast<int>(scene_camera);
+    }
 };
 
-/// The animations that play: the usual ones, or none, so that the scene stands still.
-enum class Clips { usual, none };
+/// The animations that play: the usual ones; none, so that the scene stands still; or the usual ones as exporters bake
+/// them that write a key for each frame: every jump is a straight way that takes a 30th of a second.
+enum class Clips { usual, none, baked };
 
 /// Loads the scene and poses it at time 0. The viewer looks through its first camera, or through the default one where
 /// it has none. `environment`: a map that lights it; empty: none. Throws InputError.

@@ -1,4 +1,6 @@
 // Tests the engine of the evaluation: virtual clock, methods, costs. Small pictures, little time.
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 
@@ -91,6 +93,81 @@ TEST_F(Evaluation, ALinkDelaysWhatIsShown) {
 }
 
 /// Ages of what is shown in the last part of a run whose link has lost most of its rate.
+/// Sends nothing; notes what a server hears.
+class Listener final : public Method {
+public:
+    struct Heard {
+        double now = 0;
+        SceneTime time = 0;
+        bool clock_set = false;
+    };
+    std::vector<Heard> heard;
+
+    ServerStep produce(StepInput const& input) override {
+        heard.push_back({input.now, input.time, input.clock_set});
+        return {};
+    }
+    ViewerStep consume(std::vector<std::byte> const&) override { return {}; }
+    Picture const& picture() const override { return picture_; }
+    double mean_sample_time() const override { return 0; }
+
+private:
+    Picture picture_{1, 1};
+};
+
+TEST_F(Evaluation, AServerHearsOfASetClockOneDelayLateAndNothingBefore) {
+    RunParameters run = small_run({16, 16}, 10);
+    run.start = 1;
+    run.link.delay_seconds = 0.1;
+    run.clock_settings = {{0.199, 3}};
+    Listener listener;
+    std::vector<double> shown; // scene times, as the age of what is of time 0
+    run_method(*scene, listener, run, 1, [&](std::size_t, Picture const&, double age) { shown.push_back(age); });
+    std::vector<double> const expected{1, 1.1, 3.001, 3.101, 3.201};
+    ASSERT_EQ(shown.size(), expected.size());
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+        EXPECT_NEAR(shown[i], expected[i], 1e-9);
+    }
+    int settings = 0;
+    for (Listener::Heard const& heard : listener.heard) {
+        bool const knows = heard.now >= 0.299;
+        EXPECT_NEAR(heard.time, knows ? 2.801 + heard.now : 1 + std::max(heard.now, -0.5), 1e-9) << heard.now;
+        EXPECT_EQ(heard.clock_set, knows && settings == 0) << heard.now;
+        settings += heard.clock_set ? 1 : 0;
+    }
+    EXPECT_EQ(settings, 1);
+}
+
+TEST_F(Evaluation, AStudySetsTheClockOfItsReferenceToo) {
+    StudyOptions options = study(small_run({32, 18}, 8));
+    options.events = Events::set;
+    Subject const set = prepare(bundled("teleport"), options);
+    EXPECT_EQ(set.run.clock_settings.size(), 1u);
+    auto const still = load_bench_scene(bundled("teleport"));
+    pose_at(*still, 1.1);
+    EXPECT_EQ(set.reference.picture(3), render_reference(*still, options.run.viewport, options.samples_per_side));
+    EXPECT_NE(set.reference.picture(2), set.reference.picture(3));
+}
+
+TEST_F(Evaluation, AStudyFliesAlongAHandAndWithoutPerspective) {
+    StudyOptions options = study(small_run({16, 16}, 2));
+    options.camera = source / "tests/evaluation/flights/hand.json";
+    options.orthographic_height = 8;
+    Subject const subject = prepare(bundled("windmill"), options);
+    EXPECT_EQ(subject.scene->followed_camera(), -1);
+    EXPECT_EQ(own_camera_at(*subject.scene, 1).projection, Projection::orthographic);
+    float fastest = 0, still = 0;
+    for (double time = 0; time < 3.9; time += 0.02) {
+        Camera const one = camera_at(*subject.scene, time), next = camera_at(*subject.scene, time + 0.02);
+        EXPECT_EQ(one.vertical_extent, 8);
+        float const turn = std::acos(std::min(1.0f, glm::dot(one.forward(), next.forward())));
+        fastest = std::max(fastest, turn / 0.02f);
+        still += turn < 1e-3f ? 0.02f : 0;
+    }
+    EXPECT_GT(glm::degrees(fastest), 300) << "a jerk";
+    EXPECT_GT(still, 0.8f) << "and rests";
+}
+
 TEST_F(Evaluation, CodedFramesFollowTheLinkDown) {
     RunParameters parameters = small_run({64, 48}, 40);
     parameters.viewport = {128, 128};

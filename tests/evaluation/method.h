@@ -109,6 +109,7 @@ struct StepInput {
     double waiting_bytes = 0; ///< bytes sent and not on the way yet, as the sender's socket knows
     /// Messages that were answered since the last step.
     std::span<DeliveredMessage const> delivered;
+    bool clock_set = false; ///< since the last step the scene's clock was set
 };
 
 /// Result of a step: one message to the viewer. Empty message: nothing to send; where no time was spent either, there

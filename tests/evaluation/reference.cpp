@@ -107,7 +107,7 @@ Reference::Reference(BenchScene& scene, ReferenceParameters const& p, std::files
       count_(static_cast<std::size_t>(std::lround(p.seconds * p.rate))) {
     std::filesystem::create_directories(folder_);
     auto const render = [&](std::size_t index) {
-        pose_at(scene, p.start + static_cast<double>(index) / p.rate);
+        pose_at(scene, clock_at(p.clock_settings, p.start, static_cast<double>(index) / p.rate));
         return render_reference(scene, p.viewport, p.samples_per_side);
     };
     bool stale = false;

@@ -6,6 +6,7 @@
 
 #include "common/image.h"
 #include "tests/evaluation/bench_scene.h"
+#include "tests/evaluation/scene_events.h"
 
 namespace framelet::bench {
 
@@ -15,6 +16,7 @@ struct ReferenceParameters {
     double rate = 120; ///< pictures a second
     int samples_per_side = 3; ///< samples along a side of a pixel, jittered in their strata
     double start = 0; ///< scene time of the first picture, seconds
+    std::vector<ClockSetting> clock_settings{}; ///< as in RunParameters; the scene's name has to tell of them
 };
 
 class Reference {

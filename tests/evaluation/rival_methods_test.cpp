@@ -175,6 +175,26 @@ TEST(FrameForecast, KnowsTheScenesCameraAndFollowsTheViewers) {
     }
 }
 
+TEST(FrameForecast, ASetClockIsNoMotionOfTheViewersAndTheLensIsTheirs) {
+    auto const scene = load_bench_scene(bundled("vehicle_chase"));
+    MethodSetup setup = setup_of({64, 48}, {});
+    setup.delay_seconds = 0.05;
+    FrameForecast forecast(setup, 0.01);
+    std::vector<DeliveredMessage> const none;
+    for (int step = 0; step < 7; ++step) {
+        double const now = 0.1 * step;
+        double const time = now + (step >= 3 ? 2 : 0);
+        Camera seen = camera_at(*scene, std::max(0.0, time - 0.05));
+        seen.vertical_extent = 0.5f;
+        FrameMoment const moment = forecast.moment({*scene, time, now, {1, seen, setup.viewport}, 0, none, step == 3});
+        EXPECT_LT(glm::distance(moment.camera.position, own_camera_at(*scene, moment.time).position), 1e-3f) << step;
+        EXPECT_EQ(moment.camera.vertical_extent, 0.5f) << step;
+        forecast.begin(now, true);
+        forecast.sent(now + 0.08);
+        forecast.answered(now + 0.13);
+    }
+}
+
 TEST(Margin, ShowsTheSamePixelsAndThoseAround) {
     auto const scene = load_bench_scene(bundled("vehicle_fixed"));
     Viewport const viewport{96, 64};

@@ -188,8 +188,9 @@ double reference_time(RunParameters const& parameters, std::size_t index) {
                                               : parameters.reference_times[index];
 }
 
-SceneTime scene_time(RunParameters const& parameters, double now) {
-    return parameters.start + std::clamp(now, -running_lead_seconds(parameters), parameters.scene_stops);
+SceneTime scene_time(RunParameters const& parameters, double now, double late) {
+    return clock_at(parameters.clock_settings, parameters.start,
+                    std::clamp(now, -running_lead_seconds(parameters), parameters.scene_stops), late);
 }
 
 double machine_factor(BenchScene& scene, RunParameters const& parameters, CostTable const& costs) {
@@ -230,6 +231,7 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
     };
     std::vector<DeliveredMessage> delivered;
     NumberedView view{0, {}, parameters.viewport};
+    std::size_t clock_set = 0; // how many settings of the clock the server has heard of
     while (now < parameters.seconds) {
         while (!in_flight.empty() && in_flight.front() <= now) {
             in_flight.pop_front();
@@ -247,16 +249,17 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
             now = next_look(now);
             continue;
         }
-        SceneTime const time = scene_time(parameters, now);
+        double const delay = parameters.link.delay_seconds;
+        SceneTime const time = scene_time(parameters, now, delay);
         pose_at(scene, time);
         // The camera is the viewer's: the server knows the one that was sent one delay ago.
-        Camera const camera = parameters.link.delay_seconds > 0
-                                  ? camera_at(scene, scene_time(parameters, now - parameters.link.delay_seconds))
-                                  : scene.camera;
+        Camera const camera = delay > 0 ? camera_at(scene, scene_time(parameters, now - delay)) : scene.camera;
         if (view.number == 0 || !(view.camera == camera)) {
             view = {view.number + 1, camera, parameters.viewport};
         }
-        StepInput const input{scene, time, now, view, link.backlog_bytes(now), delivered};
+        std::size_t const set = settings_made(parameters.clock_settings, now - delay);
+        bool const is_set = std::exchange(clock_set, set) != set;
+        StepInput const input{scene, time, now, view, link.backlog_bytes(now), delivered, is_set};
         ServerStep const step = method.produce(input);
         delivered.clear();
         double const started = now;
@@ -279,7 +282,6 @@ RunResult run_method(BenchScene& scene, Method& method, RunParameters const& par
         method.sent(now, static_cast<double>(step.message.size()));
 
         double const answered = viewer.receive(delivery.arrived, step.begun.value_or(started), step.message);
-        double const delay = parameters.link.delay_seconds;
         in_flight.push_back(answered + (window.beyond_round_trip ? -delay : delay));
         answers.push_back({answered + delay,
                            delivery.arrived,

@@ -12,6 +12,7 @@
 
 #include "tests/evaluation/codecs/simulated_link.h"
 #include "tests/evaluation/method.h"
+#include "tests/evaluation/scene_events.h"
 
 namespace framelet::bench {
 
@@ -38,6 +39,8 @@ struct RunParameters {
     double clock_offset = MethodSetup{}.clock_offset; ///< likewise
     /// > 0: the viewer connects this many seconds before the measured time, and the scene runs already.
     double fresh_lead = 0;
+    /// The viewer sets the scene's clock; like its camera, the server knows of that one delay late. In order of time.
+    std::vector<ClockSetting> clock_settings{};
 };
 
 /// Setup that such a run gives its method, on a machine that is `machine` times slower than the calibrated one.
@@ -49,8 +52,9 @@ double lead_seconds(RunParameters const& parameters);
 std::size_t reference_count(RunParameters const& parameters);
 double reference_time(RunParameters const& parameters, std::size_t index);
 
-/// Scene time at a time of the run; the measured time begins at 0 of the run.
-SceneTime scene_time(RunParameters const& parameters, double now);
+/// Scene time at a time of the run, to one who hears of each setting of the clock `late` seconds after it; the measured
+/// time begins at 0 of the run.
+SceneTime scene_time(RunParameters const& parameters, double now, double late = 0);
 
 /// Factor by which a machine is slower than the calibrated one if it renders and encodes whole frames of this scene, at
 /// one sample a pixel, at the rate of the parameters.

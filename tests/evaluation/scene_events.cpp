@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <string_view>
 
 #include "common/error.h"
@@ -15,6 +16,13 @@ constexpr std::array<std::pair<std::string_view, double>, 3> passings{
     {{"vehicle_flyby", 2.6}, {"vehicle_approach", 4}, {"vehicle_crossing", 0.75}}};
 /// Scene time at which the car has left the picture, and nothing is seen to move from then on.
 constexpr std::pair<std::string_view, double> leaving{"vehicle_fixed", 3.3};
+
+/// Scene times from which on nothing changes for 0.75 s; one after the other, each is unlike the one before.
+std::vector<double> rests_of(std::string_view name) {
+    return name == "flicker"    ? std::vector<double>{2, 0}
+           : name == "teleport" ? std::vector<double>{1, 2, 3, 4, 5, 0}
+                                : std::vector<double>{};
+}
 
 SceneEntry const* find_scene(std::string const& name) {
     auto const found = std::ranges::find(scene_table(), name, &SceneEntry::name);
@@ -69,6 +77,29 @@ Phase phase_at(SceneEvents const& events, double time) {
     }
     auto const within = [time](auto const& motion) { return time >= motion.first && time < motion.second; };
     return std::ranges::any_of(events.motions, within) ? Phase::moving : Phase::settled;
+}
+
+std::size_t settings_made(std::vector<ClockSetting> const& settings, double when) {
+    return static_cast<std::size_t>(std::ranges::upper_bound(settings, when, {}, &ClockSetting::when) -
+                                    settings.begin());
+}
+
+double clock_at(std::vector<ClockSetting> const& settings, double start, double now, double late) {
+    std::size_t const made = settings_made(settings, now - late);
+    return made == 0 ? start + now : settings[made - 1].time + now - settings[made - 1].when;
+}
+
+std::vector<ClockSetting> unannounced_settings(std::string const& name, double duration, double seconds) {
+    constexpr double first = 0.26, period = 0.5; // seconds; just after a measurement, at 20 a second
+    constexpr double golden_ratio = 0.6180339887;
+    std::vector<double> const rests = rests_of(name);
+    std::vector<ClockSetting> settings;
+    for (double when = first; when < seconds; when += period) {
+        std::size_t const i = settings.size();
+        double const share = std::fmod(golden_ratio * static_cast<double>(i + 1), 1.0);
+        settings.push_back({when, rests.empty() ? share * std::max(duration - period, 0.0) : rests[i % rests.size()]});
+    }
+    return settings;
 }
 
 double window_start(std::string const& name, double seconds) {

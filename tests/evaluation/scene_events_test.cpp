@@ -1,5 +1,7 @@
 #include "tests/evaluation/scene_events.h"
 
+#include <algorithm>
+
 #include <gtest/gtest.h>
 
 #include "scenes/failure_scenes.h"
@@ -25,6 +27,23 @@ TEST(SceneEvents, AShortRunSeesOne) {
     EXPECT_EQ(window_start("globe", 2), 2) << "no event: the middle";
     EXPECT_EQ(window_start("vehicle_approach", 4), 1) << "no later than the scene has so many seconds left";
     EXPECT_EQ(window_start("a scene of somebody's", 2), 0);
+}
+
+TEST(SceneEvents, AClockIsSetToWhereNothingIsAnnounced) {
+    for (std::string const name : {"flicker", "teleport"}) {
+        std::vector<double> const events = events_of(name).times;
+        for (ClockSetting const& setting : unannounced_settings(name, 6, 4)) {
+            EXPECT_FALSE(std::ranges::any_of(
+                events, [&](double event) { return event > setting.time && event < setting.time + 0.75; }))
+                << name << " at " << setting.time;
+        }
+    }
+    std::vector<ClockSetting> const settings{{0.25, 4}, {0.75, 1}};
+    EXPECT_DOUBLE_EQ(clock_at(settings, 2, 0.2), 2.2);
+    EXPECT_DOUBLE_EQ(clock_at(settings, 2, 0.35), 4.1);
+    EXPECT_DOUBLE_EQ(clock_at(settings, 2, 0.35, 0.2), 2.35) << "who hears of it late goes on as before";
+    EXPECT_DOUBLE_EQ(clock_at(settings, 2, 1, 0.2), 1.25);
+    EXPECT_EQ(unannounced_settings("walker", 4, 2).size(), 4u);
 }
 
 } // namespace

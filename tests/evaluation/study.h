@@ -12,9 +12,16 @@
 
 namespace framelet::bench {
 
+/// How the server knows what happens in a scene at once: from the scene's tracks; not before the clock is set
+/// (`unannounced_settings`); from tracks that do not say so (`Clips::baked`).
+enum class Events { announced, set, baked };
+
 struct StudyOptions {
     std::vector<std::filesystem::path> scenes; ///< files
     double turn = 0; ///< turning of the camera, degrees a second (`CameraTurn`)
+    Events events = Events::announced;
+    std::filesystem::path camera; ///< camera file by which the viewer flies, by scene time; empty: none
+    double orthographic_height = 0; ///< as in BenchScene
     bool sees_events = false; ///< each scene's run begins where `window_start` says, and not at `run.start`
     std::vector<std::string> methods;
     RunParameters run;

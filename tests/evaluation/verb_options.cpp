@@ -1,5 +1,7 @@
 #include "tests/evaluation/verb_options.h"
 
+#include <map>
+
 #include <CLI/CLI.hpp>
 
 #include "client/picture_size.h"
@@ -65,6 +67,11 @@ void add_machine_options(CLI::App& verb, VerbOptions& options) {
     add_link_options(verb, options.megabits, options.delay_ms);
 }
 
+void add_turn_option(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
+        ->check(number_in(0.0, 3600.0));
+}
+
 } // namespace
 
 void add_link_options(CLI::App& verb, double& megabits, double& delay_ms) {
@@ -116,8 +123,12 @@ void settle(VerbOptions& options, Scale const& scale, std::vector<std::string> c
     study.sees_events = !options.start;
     study.run.seconds = options.seconds.value_or(scale.seconds);
     study.run.reference_rate = options.rate.value_or(scale.rate);
-    study.run.link.bits_per_second = 1e6 * options.megabits;
-    study.run.link.delay_seconds = 1e-3 * options.delay_ms;
+    if (options.link_file.empty()) {
+        study.run.link.bits_per_second = 1e6 * options.megabits;
+        study.run.link.delay_seconds = 1e-3 * options.delay_ms;
+    } else {
+        study.run.link = read_link(options.link_file);
+    }
     study.run.link.seed = study.run.seed;
     study.run.counting = options.total ? Counting::total : Counting::server;
     study.costs = read_cost_table(options.costs_file);
@@ -142,12 +153,26 @@ void add_table_options(CLI::App& verb, VerbOptions& options) {
 }
 
 void add_compare_options(CLI::App& verb, VerbOptions& options) {
-    verb.add_option("--turn", options.study.turn, "The camera turns back and forth, degrees a second")
-        ->check(number_in(0.0, 3600.0));
+    add_turn_option(verb, options);
+    verb.add_option("--events", options.study.events,
+                    "Events are announced by the scene's tracks, come by setting the clock (set), or from tracks that "
+                    "are baked")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, Events>{
+            {"announced", Events::announced}, {"set", Events::set}, {"baked", Events::baked}}));
+    verb.add_option("--camera", options.study.camera, "Camera file: the viewer flies along it, by scene time")
+        ->check(CLI::ExistingFile);
+    verb.add_option("--orthographic", options.study.orthographic_height,
+                    "The camera is orthographic; height of its picture, metres")
+        ->check(number_in(0.0, 1e6));
+    verb.add_option("--link", options.link_file, "A link from a file, in place of --bandwidth and --delay")
+        ->check(CLI::ExistingFile);
+    verb.add_option("--round-trip", options.round_trips, "Times of a round trip, ms, each compared in turn")
+        ->delimiter(',')
+        ->check(number_in(0.0, 20000.0));
 }
 
 void add_ablation_options(CLI::App& verb, VerbOptions& options) {
-    add_compare_options(verb, options);
+    add_turn_option(verb, options);
     verb.add_option("--without", options.without, "Which parts are left out in turn (default: each)")
         ->delimiter(',')
         ->check(CLI::IsMember(ablation_parts()));

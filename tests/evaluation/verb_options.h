@@ -39,6 +39,8 @@ struct VerbOptions {
     std::optional<double> start, seconds, rate;
     double megabits = 0;
     double delay_ms = 0;
+    std::filesystem::path link_file; ///< a link instead of these two; empty: none
+    std::vector<double> round_trips; ///< of `compare`, ms; empty: that of the link alone
     bool total = false;
     std::vector<std::string> rivals_without; ///< parts that the rivals lack
     StudyOptions study;

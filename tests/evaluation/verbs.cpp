@@ -35,19 +35,46 @@ void draw_comparison(Comparison const& comparison, std::filesystem::path const& 
     write_beside_reference(folder / (comparison.scene + "-side-by-side.png"), comparison.reference_sample, shown);
 }
 
+/// Charts each method's error over the time of a round trip.
+void draw_round_trips(std::vector<Comparison> const& comparisons, std::filesystem::path const& folder) {
+    Curves chart{.title = comparisons.front().scene + ": error over the round trip",
+                 .x_title = "round trip, ms",
+                 .y_title = "mean squared error",
+                 .log_y = true,
+                 .curves = {}};
+    for (Comparison const& comparison : comparisons) {
+        chart.curves.resize(comparison.records.size());
+        for (std::size_t i = 0; i < comparison.records.size(); ++i) {
+            chart.curves[i].name = comparison.records[i].method;
+            chart.curves[i].x.push_back(2e3 * comparison.parameters.link.delay_seconds);
+            chart.curves[i].y.push_back(mean_mse(comparison.records[i]));
+        }
+    }
+    draw(chart, folder / (comparisons.front().scene + "-round-trip"));
+}
+
 json answer_compare(VerbOptions& options) {
     StudyOptions const& study = options.study;
+    std::vector<std::string> const& methods = study.methods.empty() ? method_names() : study.methods;
     json result = json::array();
     for (auto const& file : study.scenes) {
         Subject const subject = prepare(file, study);
-        Comparison const comparison =
-            compare_methods(*subject.scene, subject.reference, study.methods.empty() ? method_names() : study.methods,
-                            subject.run, study.costs);
-        print(comparison);
-        if (!study.charts.empty()) {
-            draw_comparison(comparison, study.charts);
+        std::vector<RunParameters> runs(std::max<std::size_t>(1, options.round_trips.size()), subject.run);
+        for (std::size_t i = 0; i < options.round_trips.size(); ++i) {
+            runs[i].link.delay_seconds = 0.5e-3 * options.round_trips[i];
         }
-        result.push_back(to_json(comparison));
+        std::vector<Comparison> comparisons;
+        for (RunParameters const& run : runs) {
+            comparisons.push_back(compare_methods(*subject.scene, subject.reference, methods, run, study.costs));
+            print(comparisons.back());
+            result.push_back(to_json(comparisons.back()));
+        }
+        if (!study.charts.empty()) {
+            draw_comparison(comparisons.back(), study.charts);
+            if (comparisons.size() > 1) {
+                draw_round_trips(comparisons, study.charts);
+            }
+        }
     }
     return result;
 }

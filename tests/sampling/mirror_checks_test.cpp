@@ -1,6 +1,7 @@
 #include "server/sampling/mirror/mirror_checks.h"
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 #include <utility>
 #include <vector>
@@ -69,6 +70,20 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     }
     mirror.add(later.rays, no_motions, render_pieces(plane, plane.pixel_depth(), lamp, 2, 1));
     EXPECT_TRUE(std::ranges::all_of(cells_of(mirror), [](Cell const& cell) { return cell.stale == 0; }));
+}
+
+TEST(Mirror, CellsThatPiecesShareAreProbedToo) {
+    // Each of the finest framelets has two layers, whose pieces cover half a cell each.
+    auto const steps = [](float, float y) { return Seen{std::fmod(y, 4.0f) < 2 ? 10.0f : 7.0f}; };
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth() + 2, steps));
+    mirror.look(view_at(Vec3(0), 1), no_motions);
+    std::vector<Probe> probes;
+    list_probes(mirror, cell_grid(cell_side, 16, 0), probes);
+    ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
+    std::vector<float> const dark(probes.size(), 0.1f);
+    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, dark, 16)));
 }
 
 TEST(RayGrid, EveryCellHasItsTurn) {

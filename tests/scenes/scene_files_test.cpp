@@ -219,7 +219,7 @@ TEST(SceneTable, NamesTheScenesOfTheEvaluation) {
     }
     EXPECT_EQ(names, (std::set<std::string>{"vehicle_fixed", "vehicle_chase", "vehicle_flyby", "vehicle_approach",
                                             "vehicle_crossing", "windmill", "globe", "terrain", "stop", "flicker",
-                                            "teleport", "foliage", "dim", "walker", "flag", "fan"}));
+                                            "teleport", "foliage", "dim", "walker", "flag", "fan", "glass"}));
     EXPECT_LT(sum, largest_sum);
 }
 

@@ -36,6 +36,11 @@ public:
     SceneTime time_of(Cell const& cell) const { return piece_of(cell).scene_time; }
     Vec2 position_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].at; }
     float scale_of(Cell const& cell) const { return moments_[cell.moment].reprojected[cell.piece].scale; }
+    /// True where that piece covers a position in the picture looked at.
+    bool covers(Cell const& cell, Vec2 at) const {
+        ReprojectedPiece const& piece = moments_[cell.moment].reprojected[cell.piece];
+        return glm::all(glm::lessThanEqual(glm::abs(at - piece.at), piece.half_side + 0.5f));
+    }
     /// The luma that a cell shows at a position in its picture, display-encoded.
     float luma_of(Cell const& cell, Vec2 at) const;
     /// True where a new framelet takes the place of what shows, be it better or not: what shows is of the base of the

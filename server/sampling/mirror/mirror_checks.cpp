@@ -62,7 +62,7 @@ float chance_difference(float detail, float blur, float side) {
 /// Compares what a probe really shows with what the viewer does.
 Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
     Cell const& shown = cell_at(mirror, probe.position);
-    if (shown.share < cell_pixels) { // something else has come
+    if (!shown.is_shown()) { // something else has come
         return {};
     }
     Piece const& piece = mirror.piece_of(shown);
@@ -90,7 +90,7 @@ void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& 
     probes.clear();
     for_each_position(grid, mirror.viewport(), [&](Vec2 at) {
         Cell const& shown = cell_at(mirror, at);
-        if (shown.share == cell_pixels && !mirror.piece_of(shown).is_outlier &&
+        if (shown.is_shown() && mirror.covers(shown, at) && !mirror.piece_of(shown).is_outlier &&
             mirror.time_of(shown) != mirror.view().scene_time) {
             probes.push_back({at, 1, mirror.luma_of(shown, at)});
         }

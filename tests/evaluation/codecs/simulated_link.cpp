@@ -2,12 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
 #include <utility>
+
+#include <nlohmann/json.hpp>
 
 #include "common/error.h"
 
 namespace framelet::bench {
 namespace {
+
+constexpr double packet_bytes = 1500;
 
 /// Pseudo-random number `index`, uniform in [0, 1) (SplitMix64, [Steele 2014]).
 double uniform(std::uint64_t seed, std::uint64_t index) {
@@ -23,10 +28,38 @@ bool is_amount(double value) {
 
 } // namespace
 
+LinkParameters read_link(std::filesystem::path const& file) {
+    std::ifstream stream(file);
+    try {
+        auto const json = nlohmann::json::parse(stream);
+        using Pairs = std::vector<std::pair<double, double>>;
+        LinkParameters link;
+        link.bits_per_second = 1e6 * json.value("megabits", 0.0);
+        link.delay_seconds = 1e-3 * json.value("delay_ms", 0.0);
+        link.jitter_seconds = 1e-3 * json.value("jitter_ms", 0.0);
+        link.loss = json.value("loss", 0.0);
+        for (auto const& [begin, megabits] : json.value("steps", Pairs{})) {
+            link.rate_steps.push_back({begin, 1e6 * megabits});
+        }
+        for (auto const& [begin, seconds] : json.value("stalls", Pairs{})) {
+            link.stalls.push_back({begin, seconds});
+        }
+        SimulatedLink const valid(link);
+        return link;
+    } catch (nlohmann::json::exception const&) {
+        throw InputError(file.string() + ": not a link, as tests/evaluation/links has them");
+    } catch (InputError const& error) {
+        throw InputError(file.string() + ": " + error.what());
+    }
+}
+
 SimulatedLink::SimulatedLink(LinkParameters parameters) : parameters_(std::move(parameters)) {
     LinkParameters const& p = parameters_;
     if (!is_amount(p.bits_per_second) || !is_amount(p.delay_seconds) || !is_amount(p.jitter_seconds)) {
         throw InputError("link: rate, delay and jitter must be finite and not below 0");
+    }
+    if (!(p.loss >= 0 && p.loss < 1)) {
+        throw InputError("link: the share that is lost must be at least 0 and below 1");
     }
     double earliest = -INFINITY;
     for (Stall const& stall : p.stalls) {
@@ -115,8 +148,11 @@ SimulatedLink::Delivery SimulatedLink::send(double now, std::size_t bytes) {
     }
     free_ = time;
     waiting_.push_back({started, time, static_cast<double>(bytes)});
-    double const jitter = parameters_.jitter_seconds * uniform(parameters_.seed, messages_++);
-    last_arrival_ = std::max(last_arrival_, time + parameters_.delay_seconds + jitter);
+    double const jitter = parameters_.jitter_seconds * uniform(parameters_.seed, messages_);
+    double const packets = std::ceil(static_cast<double>(bytes) / packet_bytes);
+    bool const lost = uniform(~parameters_.seed, messages_++) < 1 - std::pow(1 - parameters_.loss, packets);
+    double const again = lost ? 2 * parameters_.delay_seconds : 0;
+    last_arrival_ = std::max(last_arrival_, time + parameters_.delay_seconds + jitter + again);
     return {started, time, last_arrival_};
 }
 

@@ -1,10 +1,11 @@
-// Simulates a link on the virtual clock: rate, delay, jitter, stalls. Reliable and in order, as TCP is. A value: the
-// same messages at the same times arrive at the same times.
+// Simulates a link on the virtual clock: rate, delay, jitter, loss, stalls. Reliable and in order, as TCP is. A value:
+// the same messages at the same times arrive at the same times.
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <filesystem>
 #include <vector>
 
 namespace framelet::bench {
@@ -23,15 +24,22 @@ struct LinkParameters {
     double bits_per_second = 0; ///< 0: unlimited
     double delay_seconds = 0; ///< seconds, one way
     double jitter_seconds = 0; ///< further delay, uniform from 0 to this
+    /// Share of packets of 1500 bytes that are lost, [0, 1): such a message, and what is behind it, comes one round
+    /// trip later. The rate stays, as with a congestion control that does not take loss for a full queue.
+    double loss = 0;
     std::vector<Stall> stalls{}; ///< in order of time, disjoint
     std::vector<RateStep> rate_steps{}; ///< in order of time
     std::uint64_t seed = 1;
 };
 
+/// Reads a link from a JSON file: {"megabits": 20, "delay_ms": 30, "jitter_ms": 10, "loss": 0.01, "steps": [[seconds,
+/// megabits], ...], "stalls": [[begin, seconds], ...]}; what is left out is none. Throws InputError.
+LinkParameters read_link(std::filesystem::path const& file);
+
 class SimulatedLink {
 public:
-    /// Throws InputError for a rate, delay or jitter below 0, for times that are not finite, and for stalls or steps
-    /// that are not in order.
+    /// Throws InputError for a rate, delay, jitter or loss below 0, for a loss of 1 and more, for times that are not
+    /// finite, and for stalls or steps that are not in order.
     explicit SimulatedLink(LinkParameters parameters);
 
     struct Delivery {

@@ -1,6 +1,8 @@
 #include "tests/evaluation/codecs/simulated_link.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 
 #include <gtest/gtest.h>
 
@@ -31,6 +33,34 @@ TEST(SimulatedLink, UnlimitedTakesOnlyItsDelay) {
     SimulatedLink link(parameters);
     EXPECT_NEAR(link.send(-2, 1'000'000'000).arrived, -1.99, 1e-12);
     EXPECT_EQ(link.backlog_bytes(-2), 0);
+}
+
+TEST(SimulatedLink, WhatIsLostComesARoundTripLater) {
+    LinkParameters const parameters{.delay_seconds = 0.05, .loss = 0.2};
+    SimulatedLink link(parameters);
+    int lost = 0;
+    for (int i = 0; i < 1000; ++i) {
+        double const seconds = link.send(i, 1500).arrived - i;
+        lost += seconds > 0.1 ? 1 : 0;
+        EXPECT_NEAR(seconds, seconds > 0.1 ? 0.15 : 0.05, 1e-9);
+    }
+    EXPECT_NEAR(lost, 200, 40);
+    EXPECT_NEAR(link.send(1000, 150'000).arrived, 1000.15, 1e-9) << "one of a hundred packets is";
+    EXPECT_NEAR(link.send(1000, 1).arrived, 1000.15, 1e-9) << "waits for it";
+}
+
+TEST(SimulatedLink, IsReadFromAFile) {
+    auto const file = std::filesystem::temp_directory_path() / "framelet-link-test.json";
+    std::ofstream(file) << R"({"megabits": 8, "delay_ms": 50, "steps": [[1, 4]], "stalls": [[0.5, 0.25]]})";
+    SimulatedLink link(read_link(file));
+    EXPECT_NEAR(link.send(0.4, 200'000).arrived, 0.9, 1e-9);
+    EXPECT_EQ(link.rate_at(1.5), 4e6);
+    for (char const* const text : {"", "[1]", R"({"loss": 1})", R"({"steps": [[1]]})", R"({"delay_ms": -1})"}) {
+        std::ofstream(file) << text;
+        EXPECT_THROW(read_link(file), InputError) << text;
+    }
+    std::filesystem::remove(file);
+    EXPECT_THROW(read_link(file), InputError);
 }
 
 TEST(SimulatedLink, AStallHoldsWhatIsOnItsWay) {

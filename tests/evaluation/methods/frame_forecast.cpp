@@ -37,6 +37,10 @@ FrameForecast::FrameForecast(MethodSetup const& setup, double viewer_seconds)
     : delay_(setup.delay_seconds), viewer_seconds_(viewer_seconds) {}
 
 FrameMoment FrameForecast::moment(StepInput const& input) {
+    if (input.clock_set && !clock_.empty()) { // as if the clock had been so all along
+        SceneTime const jump = input.time - clock_.back().time - (input.now - clock_.back().now);
+        std::ranges::for_each(clock_, [jump](Tick& tick) { tick.time += jump; });
+    }
     bool const runs = !clock_.empty() && input.time > clock_.back().time;
     clock_.push_back({input.now, input.time});
     while (clock_.size() > 2 && clock_[1].now <= input.now - delay_) {
@@ -78,6 +82,8 @@ Camera FrameForecast::camera(StepInput const& input, SceneTime time) {
     if (!moves_ && result == base) {
         return seen;
     }
+    result.projection = seen.projection;
+    result.vertical_extent = seen.vertical_extent;
     Offset ahead = offset;
     if (moves_) {
         auto const seconds = static_cast<float>(std::min(delay_ + lead(), longest_extrapolation));

@@ -29,6 +29,9 @@ public:
             view_number_ = input.view.number;
             stream_->take({clock(input.now), CameraUpdate{input.view, followed_camera_}});
         }
+        if (input.clock_set) {
+            stream_->take({clock(input.now), ClockChanged{}});
+        }
         PosedScene& scene = *input.scene.posed;
         double const rate = rate_.samples_per_second > 0 ? rate_.samples_per_second : first_rate();
         ServerStep step;
