@@ -62,7 +62,7 @@ float chance_difference(float detail, float blur, float side) {
 /// Compares what a probe really shows with what the viewer does.
 Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
     Cell const& shown = cell_at(mirror, probe.position);
-    if (!shown.is_shown()) { // something else has come
+    if (!shown.is_shown()) { // what showed has gone
         return {};
     }
     Piece const& piece = mirror.piece_of(shown);
