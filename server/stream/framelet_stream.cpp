@@ -184,8 +184,7 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     Camera const then = camera_in(least_moment_seconds, turn, scene);
     if (!moves_samples_) { // what comes shows at once, as it is, until something else comes
         double const seconds = 0.5 * moments_.standing_seconds();
-        bool const jumps = switches_ahead(turn, scene, seconds).any;
-        double const ahead = options_.looks_ahead && !jumps ? seconds : 0;
+        double const ahead = options_.looks_ahead ? seconds : 0;
         return {state_at(time_in(ahead, turn), scene), turn.now, seconds, 0, false};
     }
     bool const camera_moves = then != now;
@@ -195,7 +194,7 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
         constexpr SceneTime just_after = 1e-4; // more than rounding
-        scene_ahead = camera_ahead = (jump->time + just_after - turn.present) / turn.clock_speed;
+        scene_ahead = camera_ahead = (jump->time + jump->settling + just_after - turn.present) / turn.clock_speed;
     }
     ViewState state = state_at(time_in(scene_ahead, turn), scene);
     state.view.camera = camera_in(camera_ahead, turn, scene);

@@ -71,6 +71,33 @@ TEST(Switches, OfCamerasAloneAreNotSeen) {
     EXPECT_TRUE(seen());
 }
 
+/// Keys of a frame each, as exporters bake them: three stays, the middle one too short.
+TEST(Switches, OfLightsAreShortWaysBetweenLongStays) {
+    std::vector<float> times, x;
+    for (int frame = 0; frame < 60; ++frame) { // 2 s
+        times.push_back(static_cast<float>(frame) / 30);
+        x.push_back(frame < 10 ? 0 : frame < 30 ? 1 : frame < 33 ? 2 : 3);
+    }
+    Scene scene = scene_of({{"baked", 2, {channel(Interpolation::linear, times, x)}}});
+    std::vector<Index> const clips{0};
+    auto const inner = [&] {
+        auto switches = find_switches(scene, clips).at(0).switches;
+        switches.erase(switches.begin()); // the loop does not close
+        return switches;
+    };
+    EXPECT_TRUE(inner().empty()) << "a thing that jerks is not all of the picture";
+    scene.lights.emplace_back();
+    scene.lights[0].node = 0;
+    auto const found = inner();
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_NEAR(found[0].time, 9.5 / 30, 1e-6);
+    EXPECT_NEAR(found[0].settling, 0.5 / 30, 1e-6);
+    EXPECT_TRUE(found[0].is_seen);
+    scene.clips[0].channels[0].times = {0, 1, 1.5f, 2}; // a slow way
+    scene.clips[0].channels[0].values = {0, 0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0};
+    EXPECT_TRUE(inner().empty());
+}
+
 TEST(Switches, OnlyALoneOneIsFoundWhateverTurnOfTheLoopItIsIn) {
     std::vector<ClipSwitches> const clips{{4, {{0, true}, {1.5, false}}}, {3, {{1.5004, true}}}};
     EXPECT_EQ(switches_within(clips, 1.4, 1.6).lone, (SceneSwitch{1.5, true})); // both clips at once

@@ -35,7 +35,82 @@ private:
     std::vector<float> before_, after_;
 };
 
-void add_switches(AnimationChannel const& channel, float duration, bool is_seen, std::vector<SceneSwitch>& switches) {
+/// Adds the short ways between two long stays.
+void add_baked_switches(AnimationChannel const& channel, float duration, bool is_seen,
+                        std::vector<SceneSwitch>& switches) {
+    constexpr float longest_way = 0.05f, shortest_stay = 0.2f; // seconds; frames are a 24th of a second or shorter
+    Comparison comparison;
+    std::vector<float> const& times = channel.times;
+    float stays_since = -shortest_stay; // what is before the first key is as there
+    std::optional<SceneSwitch> open; // one that is a jump if what comes after it stays
+    for (std::size_t i = 1; i < times.size() && times[i] < duration; ++i) {
+        if (!comparison.jumps(channel, times[i - 1], times[i])) {
+            continue;
+        }
+        bool const stayed = times[i - 1] - stays_since >= shortest_stay;
+        if (open && stayed) {
+            switches.push_back(*open);
+        }
+        open.reset();
+        if (stayed && times[i] - times[i - 1] <= longest_way) {
+            double const middle = 0.5 * (times[i - 1] + times[i]);
+            open = {middle, is_seen, times[i] - middle};
+        }
+        stays_since = times[i];
+    }
+    if (open) {
+        switches.push_back(*open);
+    }
+}
+
+/// Nodes, and all their ancestors.
+class MarkedNodes {
+public:
+    explicit MarkedNodes(Scene const& scene) : scene_(scene), marked_(scene.nodes.size()) {}
+
+    void mark(Index node) {
+        for (; node != none && !is_marked(node); node = scene_.nodes[static_cast<std::size_t>(node)].parent) {
+            marked_[static_cast<std::size_t>(node)] = true;
+        }
+    }
+    bool is_marked(Index node) const { return marked_[static_cast<std::size_t>(node)]; }
+
+private:
+    Scene const& scene_;
+    std::vector<bool> marked_;
+};
+
+/// Nodes of meshes, of lights and of joints.
+MarkedNodes seen_nodes(Scene const& scene) {
+    MarkedNodes seen(scene);
+    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
+        if (scene.nodes[i].mesh != none) {
+            seen.mark(static_cast<Index>(i));
+        }
+    }
+    for (Light const& light : scene.lights) {
+        seen.mark(light.node);
+    }
+    for (Skin const& skin : scene.skins) {
+        std::ranges::for_each(skin.joints, [&](Index joint) { seen.mark(joint); });
+    }
+    return seen;
+}
+
+/// Nodes of lights and cameras: all of the picture depends on where these are.
+MarkedNodes governing_nodes(Scene const& scene) {
+    MarkedNodes governing(scene);
+    for (Light const& light : scene.lights) {
+        governing.mark(light.node);
+    }
+    for (SceneCamera const& camera : scene.cameras) {
+        governing.mark(camera.node);
+    }
+    return governing;
+}
+
+void add_switches(AnimationChannel const& channel, float duration, bool is_seen, bool governs,
+                  std::vector<SceneSwitch>& switches) {
     Comparison comparison;
     if (comparison.jumps(channel, duration, 0)) {
         switches.push_back({0, is_seen});
@@ -46,32 +121,9 @@ void add_switches(AnimationChannel const& channel, float duration, bool is_seen,
                 switches.push_back({channel.times[i], is_seen});
             }
         }
+    } else if (channel.interpolation == Interpolation::linear && governs) {
+        add_baked_switches(channel, duration, is_seen, switches);
     }
-}
-
-/// True for the nodes of meshes, of lights and of joints, and for all their ancestors.
-std::vector<bool> seen_nodes(Scene const& scene) {
-    std::vector<bool> seen(scene.nodes.size());
-    auto const mark = [&](Index node) {
-        if (node != none) {
-            seen[static_cast<std::size_t>(node)] = true;
-        }
-    };
-    for (std::size_t i = 0; i < scene.nodes.size(); ++i) {
-        seen[i] = scene.nodes[i].mesh != none;
-    }
-    for (Light const& light : scene.lights) {
-        mark(light.node);
-    }
-    for (Skin const& skin : scene.skins) {
-        std::ranges::for_each(skin.joints, mark);
-    }
-    for (std::size_t i = scene.nodes.size(); i-- > 0;) {
-        if (seen[i]) {
-            mark(scene.nodes[i].parent);
-        }
-    }
-    return seen;
 }
 
 /// Sorts switches by time; of those of one time one is kept, a seen one if there is any.
@@ -86,7 +138,7 @@ void sort(std::vector<SceneSwitch>& switches) {
 } // namespace
 
 std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index const> clips) {
-    std::vector<bool> const seen = seen_nodes(scene);
+    MarkedNodes const seen = seen_nodes(scene), governing = governing_nodes(scene);
     std::vector<ClipSwitches> out;
     for (Index const index : clips) {
         AnimationClip const& clip = scene.clips[static_cast<std::size_t>(index)];
@@ -95,7 +147,8 @@ std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index cons
         }
         ClipSwitches found{clip.duration, {}};
         for (AnimationChannel const& channel : clip.channels) {
-            add_switches(channel, clip.duration, seen[static_cast<std::size_t>(channel.node)], found.switches);
+            add_switches(channel, clip.duration, seen.is_marked(channel.node), governing.is_marked(channel.node),
+                         found.switches);
         }
         sort(found.switches);
         if (!found.switches.empty()) {
@@ -119,7 +172,9 @@ Switches switches_within(std::span<ClipSwitches const> clips, SceneTime from, Sc
                 double const at = begun + jump.time;
                 if (at > from && at <= to) {
                     last = first ? std::max(last, at) : at;
-                    first = {first ? std::min(first->time, at) : at, jump.is_seen || (first && first->is_seen)};
+                    first = first ? SceneSwitch{std::min(first->time, at), jump.is_seen || first->is_seen,
+                                                std::max(first->settling, jump.settling)}
+                                  : SceneSwitch{at, jump.is_seen, jump.settling};
                 }
             }
         }

@@ -14,6 +14,7 @@ namespace framelet {
 struct SceneSwitch {
     SceneTime time = 0; ///< seconds
     bool is_seen = true; ///< something drawn or a light jumps, and not cameras alone
+    SceneTime settling = 0; ///< seconds from `time` until all is as it stays
 
     bool operator==(SceneSwitch const&) const = default;
 };
@@ -24,8 +25,9 @@ struct ClipSwitches {
     std::vector<SceneSwitch> switches; ///< by their seconds into the clip, ascending, [0, duration)
 };
 
-/// The jumps of those clips that have any: where a channel of steps takes another value, and where the clip's end is
-/// not its beginning.
+/// The jumps of those clips that have any: where a channel of steps takes another value, where the clip's end is not
+/// its beginning, and where lights and cameras go from one place to another within a frame and stay at both. Exporters
+/// that sample each frame write jumps so; the jump is in the middle then.
 std::vector<ClipSwitches> find_switches(Scene const& scene, std::span<Index const> clips);
 
 /// What jumps within a time. Jumps less than a millisecond apart are one, at the first of their times.
