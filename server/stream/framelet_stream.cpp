@@ -175,6 +175,14 @@ double FrameletStream::camera_lead(Camera const& now, Camera const& then, Turn c
     return turns && !jumps ? std::min(2 * lead, least_moment_seconds) : 0;
 }
 
+/// Seconds that samples travel before they show, where that is as long as a moment: what is less is not worth to look
+/// further ahead.
+double FrameletStream::travel_seconds() const {
+    constexpr double least = 0.06;
+    double const delivery = link_.state().delivery_seconds;
+    return delivery > least ? delivery : 0;
+}
+
 /// A moment is of what is to be seen later, if the scene's clock and the viewer's camera go on as they do: of when it
 /// ends or, where all of the picture is replaced, of the middle of the time that it is shown, since its samples come
 /// while it lasts and show until those of the next moment have come. Where the scene is about to jump, the moment is of
@@ -189,7 +197,7 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     }
     bool const camera_moves = then != now;
     double const seconds = new_moment_seconds(camera_moves, turn, scene);
-    double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds : 0;
+    double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds + travel_seconds() : 0;
     double camera_ahead = scene_ahead + camera_lead(now, then, turn, scene);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;
     if (jump) {
@@ -246,7 +254,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.shown_from = wanted.moment ? wanted.moment->shown_from : 0;
     order.outdates = wanted.moment && wanted.moment->outdates;
     order.qp = takes_loss() ? choice_.choose(link, sent_share_.value() * rendered, turn.now) : lossless_qp;
-    order.takes_shapes = takes_shapes();
+    order.takes_shapes = wanted.moment ? moves_samples_ : takes_shapes(); // at rest for clicks
     order.skips = options_.skips;
     order.still = still;
     order.again = false;

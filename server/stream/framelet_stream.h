@@ -64,6 +64,7 @@ private:
     Switches switches_ahead(Turn const& turn, PosedScene const& scene, double seconds) const;
     double samples_per_second(Turn const& turn) const;
     Camera camera_in(double seconds, Turn const& turn, PosedScene& scene) const;
+    double travel_seconds() const;
     double camera_lead(Camera const& now, Camera const& then, Turn const& turn, PosedScene const& scene) const;
     double new_moment_seconds(bool camera_moves, Turn const& turn, PosedScene const& scene) const;
     HeldMoment new_moment(Turn const& turn, PosedScene& scene) const;
