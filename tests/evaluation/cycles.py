@@ -8,8 +8,8 @@ Run by hand, of a glTF file. Both get a map of uniform light, a camera file, and
     blender -b --python-exit-code 1 -P tests/evaluation/cycles.py -- --scene X.glb --camera C.json --picture X.exr \\
         --sun-size 0.53 --lamp-size 0.1
 
-Choose what means the same in both. Blender knows neither ranges of lamps nor unlit surfaces that light others; spots get
-its own edge, and clips stay as it reads them.
+Choose what means the same in both. Blender knows neither ranges of lamps nor unlit surfaces that light others; spots
+get its own edge, and clips stay as it reads them.
 """
 import argparse
 import json
