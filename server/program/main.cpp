@@ -129,7 +129,7 @@ std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& 
     }
     std::vector<Index> clips = chosen_clips(scene, options.import);
     auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
-                                                options.exposure_ev, progress);
+                                                options.exposure_ev, progress, options.light);
     Scene const& s = loaded->scene;
     double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops; loaded in {:.1f} s", s.name,
@@ -206,6 +206,7 @@ void serve(Options& options) {
         event_log->begin({{scene_files.begin(), scene_files.end()},
                           options.environment ? std::filesystem::absolute(*options.environment).string() : "",
                           loaded->clips,
+                          options.light,
                           loaded->exposure,
                           stream.bias,
                           stream.batch_framelets});

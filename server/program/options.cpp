@@ -41,6 +41,7 @@ void require_protection(Options const& options, bool insecure) {
 std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
     bool insecure = false;
+    std::string light = "direct";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
     CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
@@ -70,6 +71,21 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
     app.add_option("--environment", options.environment, "Environment map (.hdr, .exr) that lights the scene")
         ->type_name("FILE");
+    app.add_option("--light", light,
+                   "Light: that of lights and environment alone (direct), or all of it by paths (reference), exact and "
+                   "slow: noisy while anything moves, and for a while after")
+        ->type_name("direct|reference")
+        ->check(readable_by(parse_light_method))
+        ->capture_default_str();
+    app.add_option("--sun-size", options.light.sun_degrees,
+                   "Diameter of suns, for soft shadows with --light reference; 0: hard")
+        ->type_name("DEGREES")
+        ->check(number_in(0.0, 90.0))
+        ->capture_default_str();
+    app.add_option("--lamp-size", options.light.lamp_metres, "Diameter of lamps, likewise")
+        ->type_name("METRES")
+        ->check(number_in(0.0, 1000.0))
+        ->default_str("0.1, or a hundredth of the scene where that is less");
     app.add_option("--exposure", options.exposure_ev, "Exposure")
         ->type_name("STOPS")
         ->default_str("chosen for the scene")
@@ -186,6 +202,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     try {
         parse_command_line(app, argc, argv);
         options.log = parse_log_format(log);
+        options.light.method = parse_light_method(light);
         if (!options.import.scene.empty() && options.scenes.size() > 1) {
             throw InputError("--scene chooses a scene of one file: give that file alone");
         }

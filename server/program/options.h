@@ -17,6 +17,7 @@ struct Options {
     std::vector<std::filesystem::path> scenes; ///< files, shown together
     ImportOptions import;
     std::optional<std::filesystem::path> environment;
+    LightOptions light;
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     int threads = 0; ///< 0: all cores
     int nice = default_nice; ///< of all threads

@@ -20,7 +20,7 @@ ControlRule control_rule(Admission::Rules const& rules) {
 
 Admission::Admission(Rules rules, std::function<void()> given_up)
     : rules_(std::move(rules)), given_up_(std::move(given_up)), control_(control_rule(rules_)),
-      memory_(rules_.memory_bytes) {}
+      memory_(rules_.memory_bytes, rules_.light_bytes) {}
 
 bool Admission::knows_control_token(Hello const& hello) const {
     return !rules_.control_token.empty() && same_token(hello.token, rules_.control_token);

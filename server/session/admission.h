@@ -30,6 +30,7 @@ public:
         std::string control_token; ///< who says it is let in as well, and may set the scene's clock; empty: nobody
         bool shared_control = false; ///< every viewer may set the clock; else, without a control token, the first may
         std::size_t memory_bytes; ///< of all viewers
+        std::size_t light_bytes = 0; ///< of each pixel, for its light
     };
 
     /// `given_up` is called after each viewer that has been given up.

@@ -16,7 +16,7 @@ namespace framelet {
 struct LoadedScene {
     /// Without `exposure_ev` (stops) the exposure is chosen for what the first camera sees.
     LoadedScene(Scene imported, std::vector<Index> playing, std::optional<Environment> environment,
-                std::optional<float> exposure_ev, Progress const& progress);
+                std::optional<float> exposure_ev, Progress const& progress, LightOptions const& light = {});
 
     Scene const scene;
     std::vector<Index> const clips; ///< that play

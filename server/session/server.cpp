@@ -92,7 +92,8 @@ struct Server::Impl {
     Impl(PosedScene& scene, Welcome told, ServerOptions const& given, std::unique_ptr<Listener> bound)
         : listener(std::move(bound)), options(given), welcome(std::move(told)),
           clock(!given.paused, steady_clock::now()),
-          admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000},
+          admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000,
+                     scene.path_light() != nullptr ? PathSums::bytes_per_pixel : 0},
                     [this] { loop.wake(); }),
           loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 
 #include <tbb/parallel_for.h>
 
+#include "server/render/display_framelet.h"
 #include "server/render/display_renderer.h"
 #include "server/render/visibility.h"
 
@@ -34,7 +36,7 @@ void list_samples(std::span<Framelet const> rendered, std::span<std::uint8_t con
 
 } // namespace
 
-void BatchWork::render(PosedScene const& scene) {
+void BatchWork::render(PosedScene const& scene, PathSums& sums) {
     std::size_t const count = order.plan.tiles.size();
     rendered_pool_.resize(std::max(rendered_pool_.size(), count));
     display_pool_.resize(std::max(display_pool_.size(), count));
@@ -45,10 +47,20 @@ void BatchWork::render(PosedScene const& scene) {
     ViewRays const rays = make_view_rays(view.camera, view.viewport);
     fresh_.prepare();
     std::atomic<std::uint64_t> segments = 0;
+    PathLight const* const light = scene.path_light();
+    if (light != nullptr) {
+        direct_.resize(std::max(direct_.size(), count));
+        errors_.assign(count, INFINITY);
+        if (order.plan.rays_per_sample > single_ray) {
+            sums.hold(plane);
+        }
+    }
     tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-        segments.fetch_add(render_display(scene.render_scene(), rays, plane, order.plan.tiles[i], order.state.exposure,
-                                          order.plan.rays_per_sample, order.plan.will_be_moved, fresh_.local(),
-                                          rendered_[i], display_[i]),
+        segments.fetch_add(light != nullptr
+                               ? render_by_paths(*light, scene.render_scene(), rays, plane, i, sums)
+                               : render_display(scene.render_scene(), rays, plane, order.plan.tiles[i],
+                                                order.state.exposure, order.plan.rays_per_sample,
+                                                order.plan.will_be_moved, fresh_.local(), rendered_[i], display_[i]),
                            std::memory_order_relaxed);
     });
     if (order.plan.checks && order.plan.checks->visibility) {
@@ -60,6 +72,32 @@ void BatchWork::render(PosedScene const& scene) {
         probes_.render(scene.render_scene(), view.camera, view.viewport, order.state.exposure, order.plan.probes);
 }
 
+/// Renders a framelet with the light of paths, and where its surfaces lie. Returns how many rays and paths that took.
+std::uint32_t BatchWork::render_by_paths(PathLight const& light, RenderScene const& scene, ViewRays const& rays,
+                                         ImagePlane const& plane, std::size_t index, PathSums& sums) {
+    int const paths = order.plan.rays_per_sample;
+    float const exposure = order.state.exposure;
+    Framelet& fresh = fresh_.local();
+    fresh.tile = order.plan.tiles[index];
+    std::uint32_t segments = static_cast<std::uint32_t>(framelet_samples * new_rays(paths));
+    if (are_shown(paths)) {
+        segments += render_display(scene, rays, plane, fresh.tile, exposure, single_ray, order.plan.will_be_moved,
+                                   fresh, rendered_[index], direct_[index]);
+        rendered_[index].is_supersampled = paths > single_ray;
+    }
+    if (paths == single_ray) {
+        trace_first_paths(light, rays, plane, fresh);
+    } else {
+        TileSums& tile_sums = sums[fresh.tile];
+        trace_more_paths(light, rays, plane, paths, tile_sums, fresh);
+        errors_[index] = squared_error(tile_sums, exposure);
+    }
+    if (are_shown(paths)) {
+        display_[index] = to_display(fresh, exposure);
+    }
+    return segments;
+}
+
 bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (order.plan.checks && order.plan.checks->visibility) {
         viewer.refresh.note_visibility(order.plan, visibility_);
@@ -67,8 +105,11 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (order.again) {
         needed_.assign(display_.size(), 1);
     } else {
-        needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.luma());
+        needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.luma(), errors_);
         figures.learnt_samples = display_.size() * framelet_samples;
+    }
+    if (!are_shown(order.plan.rays_per_sample)) {
+        return false;
     }
     if (!order.skips) {
         std::ranges::fill(needed_, std::uint8_t{1});
@@ -77,7 +118,7 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (order.state.view.viewport != held.plane().viewport()) { // the picture has another size by now
         std::ranges::fill(needed_, std::uint8_t{0});
     }
-    choose_qps(order.plan.tiles, needed_, order.qp, order.still, held, batch_.qp);
+    choose_qps(order.plan.tiles, needed_, order.qp, order.last_depth, held, batch_.qp);
     fill_batch(viewer);
     if (batch_.framelets.empty()) {
         return false;
@@ -107,7 +148,9 @@ void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer
         if (!moves_samples) {
             list_samples(rendered_, needed_, loose_shapes_);
         }
-        viewer.refresh.note_sent(order.plan, batch_.number, display_, rendered_, needed_,
+        std::span<DisplayFramelet const> const seen =
+            errors_.empty() ? display_ : std::span(direct_).first(display_.size());
+        viewer.refresh.note_sent(order.plan, batch_.number, seen, rendered_, needed_,
                                  moves_samples ? batch_.shapes : loose_shapes_);
     }
     if (!order.takes_shapes) {

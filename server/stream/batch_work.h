@@ -7,6 +7,7 @@
 
 #include "common/per_thread.h"
 #include "protocol/codec/batch_codec.h"
+#include "server/render/path/path_light.h"
 #include "server/render/probe_renderer.h"
 #include "server/sampling/plan/adaptive_refresh.h"
 #include "server/stream/flow/qp_choice.h"
@@ -35,7 +36,7 @@ struct BatchOrder {
     std::uint8_t qp = lossless_qp;
     bool takes_shapes = false;
     bool skips = true; ///< what the viewer has already is not sent
-    bool still = false; ///< nothing moves: what is finest is sent without loss
+    int last_depth = -1; ///< of tiles after which none come, as nothing moves: they are sent without loss
     bool again = false; ///< what the viewer holds with loss is sent once more: there is nothing to learn
 };
 
@@ -44,8 +45,9 @@ public:
     BatchOrder order; ///< set before `render`
     TurnFigures figures;
 
-    /// Renders what is ordered, in parallel on the calling TBB arena.
-    void render(PosedScene const& scene);
+    /// Renders what is ordered, in parallel on the calling TBB arena. `sums` are of the viewer's picture, where it is
+    /// at rest and its light is found by paths.
+    void render(PosedScene const& scene, PathSums& sums);
     /// Learns what was rendered; chooses QPs, makes shapes. Not to be called while the viewer's knowledge is used
     /// otherwise. False where there is nothing to send.
     bool learn(PosedScene const& scene, ViewerKnowledge& viewer);
@@ -57,6 +59,8 @@ public:
     Batch const& batch() const { return batch_; }
 
 private:
+    std::uint32_t render_by_paths(PathLight const& light, RenderScene const& scene, ViewRays const& rays,
+                                  ImagePlane const& plane, std::size_t index, PathSums& sums);
     void describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer);
     void fill_batch(ViewerKnowledge& viewer);
 
@@ -65,6 +69,10 @@ private:
     std::vector<DisplayFramelet> display_pool_;
     std::span<Framelet> rendered_; ///< without radiance, which would crowd the caches for nothing
     std::span<DisplayFramelet> display_;
+    /// What paths show is noise to probes and plan: to these it is as direct light alone shows it. Empty: there are no
+    /// paths.
+    std::vector<DisplayFramelet> direct_;
+    std::vector<float> errors_; ///< left by paths, of each framelet; empty: there are none
     ProbeRenderer probes_;
     std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
     std::vector<std::uint8_t> needed_; ///< by framelet: whether the viewer gets it

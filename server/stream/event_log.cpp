@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr char const* first_line = "framelet events 3";
+constexpr char const* first_line = "framelet events 4";
 
 enum Kind : std::uint8_t {
     viewer = 1,
@@ -78,6 +78,25 @@ Bytes event_content(double seconds, M const& message) {
     return out;
 }
 
+/// Numbers as their bits, so that they are the same again.
+nlohmann::ordered_json json_of(LightOptions const& light) {
+    nlohmann::ordered_json out{{"method", static_cast<int>(light.method)},
+                               {"sun_bits", std::bit_cast<std::uint32_t>(light.sun_degrees)}};
+    if (light.lamp_metres) {
+        out["lamp_bits"] = std::bit_cast<std::uint32_t>(*light.lamp_metres);
+    }
+    return out;
+}
+
+LightOptions light_of(nlohmann::json const& told) {
+    LightOptions light{static_cast<LightMethod>(told.at("method").get<int>()),
+                       std::bit_cast<float>(told.at("sun_bits").get<std::uint32_t>()), std::nullopt};
+    if (told.contains("lamp_bits")) {
+        light.lamp_metres = std::bit_cast<float>(told.at("lamp_bits").get<std::uint32_t>());
+    }
+    return light;
+}
+
 } // namespace
 
 EventLog::EventLog(std::filesystem::path const& file, OnFailure on_failure)
@@ -105,10 +124,13 @@ EventLog::~EventLog() {
 }
 
 void EventLog::begin(ServedScene const& served) {
-    nlohmann::ordered_json const line{
-        {"scenes", served.scenes}, {"environment", served.environment},
-        {"clips", served.clips},   {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
-        {"bias", served.bias},     {"batch_framelets", served.batch_framelets}};
+    nlohmann::ordered_json const line{{"scenes", served.scenes},
+                                      {"environment", served.environment},
+                                      {"clips", served.clips},
+                                      {"light", json_of(served.light)},
+                                      {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
+                                      {"bias", served.bias},
+                                      {"batch_framelets", served.batch_framelets}};
     std::string const text = std::string(first_line) + "\n" + line.dump() + "\n";
     static_cast<void>(::ftruncate(::fileno(out_.get()), 0)); // a device has no length
     if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0) {
@@ -193,9 +215,13 @@ EventLogReader::EventLogReader(std::filesystem::path const& file) : file_(file),
     }
     try {
         nlohmann::json const told = nlohmann::json::parse(line);
-        served_ = {told.at("scenes"), told.at("environment"),
-                   told.at("clips"),  std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
-                   told.at("bias"),   told.at("batch_framelets")};
+        served_ = {told.at("scenes"),
+                   told.at("environment"),
+                   told.at("clips"),
+                   light_of(told.at("light")),
+                   std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
+                   told.at("bias"),
+                   told.at("batch_framelets")};
     } catch (nlohmann::json::exception const& error) {
         throw InputError("'" + file.string() + "' does not say what was served: " + error.what());
     }

@@ -72,6 +72,7 @@ void FrameletStream::forget_viewer() {
     viewer_ = {};
     viewer_.motions = BodyMotions(options_.knows_rest);
     viewer_.batches = batches;
+    sums_.clear();
     complete_ = false;
     moments_.forget();
 }
@@ -111,6 +112,7 @@ Step FrameletStream::plan(Turn const& turn, PosedScene& scene) {
         }
         complete_ = !viewer_.refresh.held_tiles().any_lossy();
         if (complete_) {
+            sums_.clear();
             viewer_.refresh.settle();
             return Step::nothing;
         }
@@ -246,6 +248,14 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     wanted.motions = &viewer_.motions;
     wanted.moves_samples = takes_shapes();
     wanted.limits = options_.limits;
+    if (scene.path_light() != nullptr) {
+        wanted.completion = completion_of_paths;
+        wanted.limits.most_level = std::min(wanted.limits.most_level, completion_of_paths.finest);
+        wanted.limits.most_rays = single_ray;
+    }
+    if (!still) {
+        sums_.clear();
+    }
     BatchWork& work = free_work();
     BatchOrder& order = work.order;
     order.state = wanted.moment ? wanted.moment->state : present;
@@ -256,7 +266,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     order.qp = takes_loss() ? choice_.choose(link, sent_share_.value() * rendered, turn.now) : lossless_qp;
     order.takes_shapes = wanted.moment ? moves_samples_ : takes_shapes(); // at rest for clicks
     order.skips = options_.skips;
-    order.still = still;
+    order.last_depth = still ? viewer_.refresh.regions().depth_of(wanted.completion.finest) : -1;
     order.again = false;
     viewer_.refresh.plan(wanted, order.plan);
     if (order.plan.is_empty()) { // once what is rendered is learnt there may be something
@@ -280,7 +290,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
 void FrameletStream::plan_exactly(ViewState const& present, double now, PosedScene const& scene) {
     constexpr std::size_t most_framelets = 1024;
     BatchWork& work = free_work();
-    work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, true, true};
+    work.order = {present, present, moving_camera(scene), 0, false, {}, lossless_qp, takes_shapes(), true, -1, true};
     work.order.plan.moment_begun = now;
     viewer_.refresh.held_tiles().list_lossy(std::min(bounded_batch(link_.state()), most_framelets),
                                             work.order.plan.tiles);
@@ -305,7 +315,7 @@ void FrameletStream::set_planned(BatchWork& work) {
 
 void FrameletStream::render(PosedScene const& scene) {
     FRAMELET_CHECK(planned_ != nullptr);
-    planned_->render(scene);
+    planned_->render(scene, sums_);
 }
 
 bool FrameletStream::learn(PosedScene const& scene) {

@@ -88,6 +88,7 @@ private:
     CameraForecast forecast_; ///< of a camera that is the viewer's own
     MomentChoice moments_;
     ViewerKnowledge viewer_;
+    PathSums sums_; ///< of the picture, while it is at rest and not complete; used by `render` alone, or before
 
     std::array<BatchWork, 2> works_;
     BatchWork* planned_ = nullptr; ///< the work that was planned last, and is not learnt

@@ -6,12 +6,17 @@
 
 namespace framelet {
 
-PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene)
+PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene,
+                       LightOptions const& light)
     : scene_(scene), clips_(std::move(clips)), render_scene_(render_scene),
       animated_(animation_duration(scene, clips_) > 0), switches_(find_switches(scene, clips_)),
       moving_cameras_(framelet::moving_cameras(scene, clips_)), pose_(evaluate_pose(scene, clips_, 0)) {
     render_scene_.set_clips(clips_);
     render_scene_.set_pose(pose_);
+    if (light.method == LightMethod::reference) {
+        LampSizes const sizes = lamp_sizes(light, scene_bounds(scene, pose_));
+        path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), sizes);
+    }
 }
 
 bool PosedScene::camera_moves(int index) const {
@@ -34,6 +39,9 @@ void PosedScene::pose(SceneTime time) {
         ScenePose const& wanted = pose_of(time);
         rendered_.reset(); // for when it fails half way
         render_scene_.set_pose(wanted);
+        if (path_light_) {
+            path_light_->update();
+        }
     } catch (std::bad_alloc const&) {
         throw SceneUnposed();
     }

@@ -2,11 +2,13 @@
 // rendered. A resource: posing moves the renderer's scene.
 #pragma once
 
+#include <memory>
 #include <new>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "server/render/path/path_light.h"
 #include "server/render/prepared/render_scene.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/switches.h"
@@ -21,13 +23,15 @@ struct SceneUnposed : std::bad_alloc {
 class PosedScene {
 public:
     /// Poses the scene for time 0. Scene and renderer must outlive it.
-    PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene);
+    PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, LightOptions const& light = {});
     PosedScene(PosedScene const&) = delete;
     PosedScene& operator=(PosedScene const&) = delete;
 
     Scene const& scene() const { return scene_; }
     std::span<Index const> clips() const { return clips_; }
     RenderScene const& render_scene() const { return render_scene_; }
+    /// What finds the light of its pose by paths; null where light is direct.
+    PathLight const* path_light() const { return path_light_.get(); }
     bool is_animated() const { return animated_; }
     /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
@@ -50,6 +54,7 @@ private:
     std::vector<ClipSwitches> const switches_;
     std::vector<bool> const moving_cameras_;
     ScenePose pose_; ///< evaluated last
+    std::unique_ptr<PathLight> path_light_;
     /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
     std::optional<SceneTime> rendered_ = 0;
 };

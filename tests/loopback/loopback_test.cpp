@@ -17,6 +17,8 @@
 
 #include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/path/path_light.h"
+#include "server/render/path/path_picture.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"
 #include "tests/loopback/process.h"
@@ -147,6 +149,31 @@ TEST(Loopback, ConvergedPictureIsTheDirectRender) {
         auto const statistics = nlohmann::json::parse(client.process().output());
         EXPECT_TRUE(statistics.at("converged").get<bool>());
     }
+}
+
+/// A viewer that has just come, and one that has flown there, with others and without moving what it holds.
+TEST(Loopback, LightByPathsIsTheSameForAllAtRest) {
+    constexpr Viewport viewport{24, 16};
+    ServerProcess server(scene_file, {"--paused", "--exposure", "0", "--light", "reference"});
+    StillCamera const view;
+    std::string const path = R"({"keys":[{"time":0,"position":[6,4,12],"target":[0,1,0],"fov_degrees":50},
+        {"time":1,"position":[9,4,12],"target":[0,1,0],"fov_degrees":50}]})";
+    ConvergingClient flying(server.address(), path, "24x16", {"--rate", "30"});
+    ConvergingClient unmoving(server.address(), path, "24x16", {"--no-reprojection"});
+    Picture const seen = flying.finish();
+    EXPECT_EQ(unmoving.finish(), seen);
+    ConvergingClient fresh(server.address(), view.json(), "24x16");
+    EXPECT_EQ(fresh.finish(), seen);
+
+    Scene const scene = import_scene(scene_file);
+    ScenePose const pose = evaluate_pose(scene, default_clips(scene), 0);
+    RenderScene render_scene(scene, std::nullopt);
+    render_scene.set_pose(pose);
+    PathOptions options;
+    options.paths = 1024;
+    options.sizes = lamp_sizes({}, scene_bounds(scene, pose));
+    Picture const same = to_display(render_paths(render_scene, view.camera(), viewport, options), 1);
+    EXPECT_GE(psnr(seen, same), 45) << "the same paths, but where fewer are enough";
 }
 
 TEST(Loopback, CameraMovesArrive) {
@@ -449,6 +476,9 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_SERVER, {scene_file, "--scene", "99"}, 1, "there is no scene '99'"},
         {FRAMELET_SERVER, {scene_file, scene_file, "--scene", "0"}, 2, "--scene chooses a scene of one file"},
         {FRAMELET_SERVER, {scene_file, "--up", "w"}, 2, "x, y or z, not 'w'"},
+        {FRAMELET_SERVER, {scene_file, "--light", "moon"}, 2, "light is direct or reference, not 'moon'"},
+        {FRAMELET_SERVER, {scene_file, "--sun-size", "91"}, 2, "from 0 to 90"},
+        {FRAMELET_SERVER, {scene_file, "--lamp-size", "nan"}, 2, "--lamp-size"},
         {FRAMELET_SERVER, {scene_file, "--unit", "parsec"}, 2, "mm, cm, m, km, in or ft, not 'parsec'"},
         {FRAMELET_SERVER, {empty}, 1, "empty.gltf': it has no triangles"},
         {FRAMELET_SERVER, {scene_file, "--exposure", "nan"}, 2, "--exposure"},

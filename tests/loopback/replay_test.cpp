@@ -55,7 +55,7 @@ struct RecordedSession {
         std::vector<std::string> const& files = log.served().scenes;
         Scene const scene = import_scenes(std::vector<std::filesystem::path>(files.begin(), files.end()));
         RenderScene render_scene(scene, std::nullopt);
-        PosedScene posed(scene, log.served().clips, render_scene);
+        PosedScene posed(scene, log.served().clips, render_scene, log.served().light);
         return replay(log, posed);
     }
 };

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include <gtest/gtest.h>
@@ -64,6 +65,61 @@ TEST(AdaptiveRefresh, MotionEndsFourRaysASample) {
     synthetic.input.state.view.camera.position.x = 1;
     synthetic.step();
     EXPECT_EQ(synthetic.rays_per_sample, single_ray);
+}
+
+/// With light by paths: breadth first, sent at 1, 4, 16, 32, 64 .. paths, until the error is small enough.
+TEST(AdaptiveRefresh, PathsAreAddedUntilTheirErrorIsSmall) {
+    constexpr int telling = 16;
+    Completion const completion = completion_of_paths;
+    ImagePlane const plane(small);
+    auto const variance = [&](Tile tile) { // of one path: more and more to the right
+        return 1e-5f * std::pow(1.05f, static_cast<float>(plane.tile_rect(tile).left));
+    };
+    SyntheticRefresh synthetic(small, half_dust);
+    synthetic.running = false;
+    synthetic.input.completion = completion;
+    synthetic.input.limits.most_level = completion.finest;
+    synthetic.input.limits.most_rays = single_ray;
+    synthetic.input.batch_framelets = 64;
+    synthetic.error_of_paths = [&](Tile tile, int paths) {
+        return paths < telling ? INFINITY : variance(tile) / static_cast<float>(paths);
+    };
+    std::map<Tile, int> paths;
+    int last = single_ray;
+    while (synthetic.step()) {
+        EXPECT_GE(synthetic.tiles.empty() ? last : synthetic.rays_per_sample, last) << "the fewest first";
+        last = synthetic.tiles.empty() ? last : synthetic.rays_per_sample;
+        for (Tile const tile : synthetic.tiles) {
+            int const had = paths[tile];
+            EXPECT_EQ(synthetic.rays_per_sample, had == 0 ? single_ray : next_rays(had)) << tile.code;
+            paths[tile] = synthetic.rays_per_sample;
+        }
+    }
+    EXPECT_TRUE(synthetic.refresh.is_complete(synthetic.input.state));
+    int least = completion.most_rays, most = 0;
+    for (Tile const tile : make_uniform_tiling(plane, plane.pixel_depth()).tiles) {
+        int wanted = telling;
+        while (wanted < completion.most_rays && variance(tile) / static_cast<float>(wanted) > completion.enough) {
+            wanted *= 2;
+        }
+        EXPECT_EQ(paths[tile], wanted) << tile.code;
+        least = std::min(least, wanted);
+        most = std::max(most, wanted);
+    }
+    EXPECT_EQ(least, telling);
+    EXPECT_EQ(most, completion.most_rays);
+}
+
+TEST(RaysPerSample, ViewersSeeEachPictureThatIsMuchBetter) {
+    std::vector<int> shown;
+    for (int paths = single_ray; paths <= completion_of_paths.most_rays; paths = next_rays(paths)) {
+        if (are_shown(paths)) {
+            shown.push_back(paths);
+        }
+        EXPECT_LE(new_rays(next_rays(paths)), most_rays_at_once);
+        EXPECT_GE(new_rays(next_rays(paths)), next_rays(paths) - paths);
+    }
+    EXPECT_EQ(shown, (std::vector{1, 4, 16, 32, 64, 128, 256, 512, 1024}));
 }
 
 } // namespace

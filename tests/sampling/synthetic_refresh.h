@@ -116,6 +116,8 @@ public:
     bool running = true; ///< the scene clock
     double stopped_at = 0; ///< scene time while it is not
     float camera_speed = 0; ///< metres a second, while the clock runs; what is to be seen is the same everywhere
+    /// Mean squared error that so many paths a sample leave of a tile; empty: there are no paths.
+    std::function<float(Tile, int)> error_of_paths;
     double moment_length = 0.05; ///< seconds for which moments are held while the clock runs
     AdaptiveRefresh refresh;
 
@@ -129,7 +131,13 @@ public:
 private:
     void learn() {
         shapes_.clear();
-        auto const& send = refresh.learn(rendered_plan_, display_, rendered_, luma_);
+        std::vector<float> errors;
+        if (error_of_paths) {
+            for (Tile const tile : rendered_plan_.tiles) {
+                errors.push_back(error_of_paths(tile, rendered_plan_.rays_per_sample));
+            }
+        }
+        auto const& send = refresh.learn(rendered_plan_, display_, rendered_, luma_, errors);
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send[i] != 0) {
                 sent.push_back(display_[i]);
@@ -168,7 +176,7 @@ private:
                 framelet.red[i] =
                     shade_cell(static_cast<float>(rect.left) + (static_cast<float>(morton_x(i)) + 0.5f) * spacing,
                                static_cast<float>(rect.top) + (static_cast<float>(morton_y(i)) + 0.5f) * spacing,
-                               spacing, plan.rays_per_sample);
+                               spacing, error_of_paths ? single_ray : plan.rays_per_sample);
             }
             framelet.green = framelet.blue = framelet.red;
             rendered_[t].depth.fill(10);

@@ -27,7 +27,7 @@ void fail(std::string const& problem) {
 
 TEST(EventLog, GivesBackWhatWasAdded) {
     TemporaryFile const file;
-    ServedScene const served{{"a scene", "another"}, "", {1, 2}, 0.1f, -0.5, 7};
+    ServedScene const served{{"a scene", "another"}, "", {1, 2}, {LightMethod::reference, 0.1f, 0.7f}, 0.1f, -0.5, 7};
     CameraUpdate camera;
     camera.view = {3, {}, {64, 48}};
     EncodedBatch batch;
@@ -54,6 +54,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     EventLogReader reader(file.path);
     EXPECT_EQ(reader.served().scenes, served.scenes);
     EXPECT_EQ(reader.served().clips, served.clips);
+    EXPECT_EQ(reader.served().light, served.light);
     EXPECT_EQ(reader.served().exposure, served.exposure);
     EXPECT_EQ(reader.served().bias, served.bias);
     EXPECT_EQ(reader.served().batch_framelets, served.batch_framelets);

@@ -137,18 +137,18 @@ TEST(QpChoice, WhatIsUnchangedIsSentExactlyOnce) {
     for (Tile const tile : tiles) {
         held.put(tile, 1, false);
     }
-    choose_qps(tiles, needed, 9, false, held, qps);
+    choose_qps(tiles, needed, 9, -1, held, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
     EXPECT_EQ(qps, (std::vector<std::uint8_t>{9, 9}));
 
     needed = {0, 0, 0};
-    choose_qps(tiles, needed, 9, false, held, qps);
+    choose_qps(tiles, needed, 9, -1, held, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{1, 0, 1}));
     EXPECT_TRUE(qps.empty()) << "all exact";
     EXPECT_FALSE(held.any_lossy());
 
     needed = {0, 0, 0};
-    choose_qps(tiles, needed, 9, false, held, qps);
+    choose_qps(tiles, needed, 9, -1, held, qps);
     EXPECT_EQ(needed, (std::vector<std::uint8_t>{0, 0, 0}));
 }
 
@@ -156,7 +156,7 @@ TEST(QpChoice, TheFinestOfAStillPictureAreExact) {
     HeldTiles held(ImagePlane({40, 24}));
     std::vector<Tile> const tiles{make_tile(4, 8, 4), make_tile(2, 0, 0), make_tile(4, 8, 0)};
     std::vector<std::uint8_t> needed{1, 1, 1}, qps;
-    choose_qps(tiles, needed, 9, true, held, qps);
+    choose_qps(tiles, needed, 9, held.plane().max_depth(), held, qps);
     EXPECT_EQ(qps, (std::vector<std::uint8_t>{0, 9, 0}));
 }
 

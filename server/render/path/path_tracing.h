@@ -18,10 +18,14 @@
 
 namespace framelet {
 
-/// What paths sample of a scene in its present pose. The scene must stay as it is while this is used.
+/// What paths sample of a scene in the pose that it had when this was made or updated last.
 struct PathScene {
     explicit PathScene(PreparedScene const& prepared)
         : scene(prepared), area_lights(prepared), lamp_rays(prepared.lights), sky(prepared.environment) {}
+    void update() {
+        area_lights = AreaLights(scene);
+        lamp_rays = LampRays(scene.lights);
+    }
 
     PreparedScene const& scene;
     AreaLights area_lights;

@@ -27,16 +27,16 @@ std::span<Region> RegionGrid::operator[](Patch const& patch) {
     return std::span(regions_).subspan(first_under(patch.node), std::size_t{1} << (2 * levels));
 }
 
-void RegionGrid::take(Patch const& patch, double now, bool supersampled) {
+void RegionGrid::take(Patch const& patch, double now, int rays_per_sample) {
     for (Region& region : (*this)[patch]) {
-        region.taken = {shown_level(level_of(patch.depth), supersampled), now};
+        region.taken = {shown_level(level_of(patch.depth), rays_per_sample), now};
     }
 }
 
-void RegionGrid::note_held(Patch const& patch, double when, bool supersampled) {
+void RegionGrid::note_held(Patch const& patch, double when, int rays_per_sample) {
     for (Region& region : (*this)[patch]) {
         region.level = level_of(patch.depth);
-        region.supersampled = supersampled;
+        region.rays_per_sample = rays_per_sample;
         region.rendered = when;
         if (region.taken.when == when) {
             region.taken = {};

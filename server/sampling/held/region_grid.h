@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "server/render/rays_per_sample.h"
 #include "server/sampling/held/patch.h"
 #include "server/sampling/held/sampling_level.h"
 
@@ -29,15 +30,15 @@ struct TakenSamples {
 /// What a viewer holds at a region.
 struct Region {
     int level = -1; ///< of the samples that came last; -1: none
-    bool supersampled = false; ///< those are means of four rays each
+    int rays_per_sample = single_ray; ///< of those
     double rendered = never; ///< when those were planned, seconds
-    float left = 0; ///< mean squared error that the finest samples leave, by their last rendering alone
+    float left = 0; ///< mean squared error that samples of a picture at rest leave, by their last rendering alone
     TakenSamples taken;
 };
 
-/// Level that samples of this level show: means of four rays are as good as samples of the next finer level.
-constexpr int shown_level(int level, bool supersampled) {
-    return supersampled && level < finest_level ? level + 1 : level;
+/// Level that samples of this level show: means of several rays are as good as samples of the next finer level.
+constexpr int shown_level(int level, int rays_per_sample) {
+    return rays_per_sample > single_ray && level < finest_level ? level + 1 : level;
 }
 
 class RegionGrid {
@@ -70,9 +71,9 @@ public:
     std::uint32_t first_under(Tile node) const { return node.index() << (2 * (depth_ - node.depth())); }
 
     /// Notes that a patch has been taken to be rendered.
-    void take(Patch const& patch, double now, bool supersampled);
+    void take(Patch const& patch, double now, int rays_per_sample);
     /// Notes that what was taken at `when` has come to the viewer; what was taken again since stays taken.
-    void note_held(Patch const& patch, double when, bool supersampled);
+    void note_held(Patch const& patch, double when, int rays_per_sample);
 
 private:
     Tile node_of(std::uint32_t index) const { return {(1u << (2 * depth_)) + index}; }

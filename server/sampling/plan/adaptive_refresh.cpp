@@ -37,8 +37,9 @@ bool shows_motion(Framelet const& framelet) {
 
 bool AdaptiveRefresh::is_complete(ViewState const& state) const {
     return seen_ && !strayed_ && same_picture(*seen_, state) &&
-           std::ranges::all_of(regions_.visible(),
-                               [this](std::uint32_t index) { return is_finished(regions_[index], still_since_); });
+           std::ranges::all_of(regions_.visible(), [this](std::uint32_t index) {
+               return is_finished(regions_[index], still_since_, completion_);
+           });
 }
 
 /// Takes in what is to be seen.
@@ -57,6 +58,7 @@ void AdaptiveRefresh::see(RefreshInput const& input) {
         ++cameras_;
     }
     moves_samples_ = input.moves_samples;
+    completion_ = input.completion;
     if (is_other_kind || strayed_ || !same_picture(*seen_, state)) {
         still_since_ = input.now;
     }
@@ -96,6 +98,7 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time, input.motions, moves_samples};
     plan.will_be_moved = input.moment && moves_samples;
     plan.limits = input.limits;
+    plan.completion = input.completion;
     if (moves_samples && camera_ != view.camera) { // the viewer moves all that it holds
         held_tiles_.forget_contents();
         ++cameras_;
@@ -127,6 +130,7 @@ double AdaptiveRefresh::planned_together(RefreshInput const& input, RefreshPlan 
 void AdaptiveRefresh::plan_cycle(RefreshInput const& input, double begun, RefreshPlan& plan) {
     cycle_.clear();
     next_ = first_supersampled_ = 0;
+    supersampling_ = four_rays;
     ++cycle_count_;
     cycle_seconds_ = static_cast<double>(input.cycle_seconds);
     cycle_budget_ = input.samples_per_second * cycle_seconds_;
@@ -155,10 +159,10 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, double begun, Refres
     moments_.plan(regions_, budget, rated_);
     append_rated(samples, rays, prices_bytes);
     if (cycle_.empty() && !input.moment) {
-        select_finest(regions_, still_since_, samples, cycle_);
+        select_finest(regions_, still_since_, completion_, samples, cycle_);
         first_supersampled_ = cycle_.size();
         if (cycle_.empty()) {
-            select_supersampling(regions_, still_since_, samples, cycle_);
+            supersampling_ = select_supersampling(regions_, still_since_, completion_, samples, cycle_);
         }
     }
 }
@@ -185,8 +189,8 @@ void AdaptiveRefresh::append_rated(double samples, double rays, bool prices_byte
 /// if any is left; in order of their regions, since neighbours are coded in fewer bytes beside each other.
 void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) {
     bool const single = next_ < first_supersampled_ || next_ == cycle_.size();
-    plan.rays_per_sample = single ? single_ray : four_rays;
-    most_framelets /= static_cast<std::size_t>(plan.rays_per_sample);
+    plan.rays_per_sample = single ? single_ray : supersampling_;
+    most_framelets /= static_cast<std::size_t>(new_rays(plan.rays_per_sample));
     std::size_t tiles = 0;
     for (std::size_t const end = single ? first_supersampled_ : cycle_.size(); next_ < end; ++next_) {
         plan.tiles.clear();
@@ -204,15 +208,17 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) 
         std::size_t const before = plan.tiles.size();
         append_tiles(regions_.plane(), patch, plan.tiles);
         plan.tile_counts.push_back(plan.tiles.size() - before);
-        regions_.take(patch, plan.now, !single);
+        regions_.take(patch, plan.now, plan.rays_per_sample);
     }
 }
 
 std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
                                                         std::span<DisplayFramelet const> framelets,
                                                         std::span<Framelet const> rendered,
-                                                        std::span<float const> probe_luma) {
+                                                        std::span<float const> probe_luma,
+                                                        std::span<float const> errors) {
     FRAMELET_CHECK(framelets.size() == plan.tiles.size() && rendered.size() == plan.tiles.size());
+    FRAMELET_CHECK(errors.empty() || errors.size() == plan.tiles.size());
     FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
     if (plan.viewport != regions_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
@@ -220,6 +226,13 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     }
     if (plan.checks && plan.checks->probe_spacing > 0) {
         moments_.note_looks(plan.moment, plan.probes, probe_luma, plan.checks->probe_spacing);
+    }
+    if (!are_shown(plan.rays_per_sample)) {
+        send_.assign(framelets.size(), 0);
+        for (Patch const& patch : plan.patches) {
+            regions_.note_held(patch, plan.now, plan.rays_per_sample);
+        }
+        return send_;
     }
     send_.assign(framelets.size(), 1);
     contents_.resize(framelets.size());
@@ -232,13 +245,14 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
     for (std::size_t p = 0; p < plan.patches.size(); ++p) {
         Patch const& patch = plan.patches[p];
         std::size_t const end = first + plan.tile_counts[p];
-        bool const is_finest = regions_.level_of(patch.depth) == finest_level;
-        if (is_finest && !means) {
-            float const left = error_left(framelets.subspan(first, end - first));
+        bool const is_finest = regions_.level_of(patch.depth) == plan.completion.finest;
+        if (is_finest && (!means || !errors.empty())) {
+            float const left = errors.empty() ? error_left(framelets.subspan(first, end - first))
+                                              : std::ranges::max(errors.subspan(first, end - first));
             std::ranges::for_each(regions_[patch], [left](Region& region) { region.left = left; });
         }
         // Means stay where single rays say that there are to be means again.
-        bool const keeps_means = means || (is_finest && !is_enough(regions_[patch].front().left));
+        bool const keeps_means = means || (is_finest && regions_[patch].front().left > plan.completion.enough);
         for (; first < end; ++first) {
             Tile const tile = plan.tiles[first];
             bool const same = contents_[first] != 0 && held_tiles_.shows(tile, contents_[first], means) &&
@@ -248,7 +262,7 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
                 held_tiles_.put(tile, contents_[first], means);
             }
         }
-        regions_.note_held(patch, plan.now, means);
+        regions_.note_held(patch, plan.now, plan.rays_per_sample);
     }
     return send_;
 }

@@ -29,14 +29,17 @@ public:
     /// not learnt yet an empty plan only says that there is nothing else.
     void plan(RefreshInput const& input, RefreshPlan& plan);
 
-    /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. Plans are learnt
-    /// once each and in order. Returns for each framelet whether the viewer needs it, which it does not where it shows
-    /// the same already, or its picture has another size by now; valid until the next call.
+    /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. `errors`: mean
+    /// squared error left in each framelet; empty: the samples are to tell. Plans are learnt once each and in order.
+    /// Returns for each framelet whether the viewer needs it, which it does not where it shows the same already, or its
+    /// picture has another size by now; valid until the next call.
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
-                                           std::span<Framelet const> rendered, std::span<float const> probe_luma);
+                                           std::span<Framelet const> rendered, std::span<float const> probe_luma,
+                                           std::span<float const> errors = {});
 
     /// Notes that the viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch
     /// of this number, with these shapes, in order; sets how soon what they show fades. After `learn` of the same plan.
+    /// `framelets` are as probes see them.
     void note_sent(RefreshPlan const& plan, std::uint64_t batch, std::span<DisplayFramelet const> framelets,
                    std::span<Framelet const> rendered, std::span<std::uint8_t const> sent,
                    std::span<FrameletShape> shapes);
@@ -70,6 +73,7 @@ private:
     void take_batch(std::size_t most_framelets, RefreshPlan& plan);
 
     std::optional<ViewState> seen_; ///< what the last plan was for: the present
+    Completion completion_; ///< of the last plan
     double still_since_ = 0; ///< when what is to be seen changed last, seconds
     bool strayed_ = false; ///< something was rendered for another state than `seen_` since
     bool moves_samples_ = true; ///< of the last plan
@@ -88,7 +92,8 @@ private:
     double cycle_budget_ = 0; ///< samples
     double cycle_seconds_ = 0;
     std::vector<Patch> cycle_; ///< patches of the cycle
-    std::size_t first_supersampled_ = 0; ///< index in `cycle_` from which on each sample is made of four rays
+    std::size_t first_supersampled_ = 0; ///< index in `cycle_` from which on each sample is made of several rays
+    int supersampling_ = four_rays; ///< how many
     std::size_t next_ = 0; ///< index in `cycle_` of the patch that is taken next
     std::vector<std::uint8_t> send_;
     std::vector<std::uint64_t> contents_; ///< scratch

@@ -2,30 +2,23 @@
 
 #include <algorithm>
 #include <functional>
-#include <utility>
+#include <tuple>
 
 #include "common/color.h"
-#include "server/render/rays_per_sample.h"
 
 namespace framelet {
 namespace {
 
-/// Mean squared error of the finest samples above which they are not enough of a still picture.
-constexpr float enough = 5e-5f;
-
 /// True where the viewer holds the finest samples of the region.
-bool is_finest(Region const& region, double still_since) {
-    return region.level == finest_level && region.rendered >= still_since;
+bool is_finest(Region const& region, double still_since, Completion const& completion) {
+    return region.level == completion.finest && region.rendered >= still_since;
 }
 
 } // namespace
 
-bool is_enough(float left) {
-    return left <= enough;
-}
-
-bool is_finished(Region const& region, double still_since) {
-    return is_finest(region, still_since) && (region.supersampled || is_enough(region.left));
+bool is_finished(Region const& region, double still_since, Completion const& completion) {
+    return is_finest(region, still_since, completion) &&
+           (region.rays_per_sample >= completion.most_rays || region.left <= completion.enough);
 }
 
 float error_left(std::span<DisplayFramelet const> framelets) {
@@ -46,34 +39,47 @@ float error_left(std::span<DisplayFramelet const> framelets) {
     return resolved / samples_per_pixel(finest_level);
 }
 
-void select_finest(RegionGrid const& regions, double still_since, double samples, std::vector<Patch>& patches) {
+void select_finest(RegionGrid const& regions, double still_since, Completion const& completion, double samples,
+                   std::vector<Patch>& patches) {
     double planned = 0;
     for (std::uint32_t const index : regions.visible()) {
         Region const& region = regions[index];
-        bool const taken = region.taken.level == finest_level && region.taken.when >= still_since;
-        if (planned < samples && !is_finest(region, still_since) && !taken) {
-            patches.push_back(regions.patch_of(index, regions.plane().max_depth()));
+        bool const taken = region.taken.level >= completion.finest && region.taken.when >= still_since;
+        if (planned < samples && !is_finest(region, still_since, completion) && !taken) {
+            patches.push_back(regions.patch_of(index, regions.depth_of(completion.finest)));
             planned += tile_count(patches.back()) * framelet_samples;
         }
     }
 }
 
-void select_supersampling(RegionGrid const& regions, double still_since, double samples, std::vector<Patch>& patches) {
-    std::vector<std::pair<float, std::uint32_t>> unfinished;
+int select_supersampling(RegionGrid const& regions, double still_since, Completion const& completion, double samples,
+                         std::vector<Patch>& patches) {
+    struct Unfinished {
+        int rays_per_sample;
+        float left;
+        std::uint32_t index;
+    };
+    std::vector<Unfinished> unfinished;
     for (std::uint32_t const index : regions.visible()) {
         Region const& region = regions[index];
-        if (is_finest(region, still_since) && !is_finished(region, still_since) && region.taken.level < 0) {
-            unfinished.push_back({region.left, index});
+        if (is_finest(region, still_since, completion) && !is_finished(region, still_since, completion) &&
+            region.taken.level < 0) {
+            unfinished.push_back({region.rays_per_sample, region.left, index});
         }
     }
-    std::ranges::sort(unfinished, std::ranges::greater());
+    std::ranges::sort(unfinished, std::ranges::less(), [](Unfinished const& region) {
+        return std::tuple(region.rays_per_sample, -region.left, region.index);
+    });
+    int const had = unfinished.empty() ? single_ray : unfinished.front().rays_per_sample;
+    int const wanted = next_rays(had);
     double planned = 0;
-    for (auto const& [left, index] : unfinished) {
-        if (planned < samples) {
-            patches.push_back(regions.patch_of(index, regions.plane().max_depth()));
-            planned += tile_count(patches.back()) * framelet_samples * four_rays;
+    for (Unfinished const& region : unfinished) {
+        if (planned < samples && region.rays_per_sample == had) {
+            patches.push_back(regions.patch_of(region.index, regions.depth_of(completion.finest)));
+            planned += tile_count(patches.back()) * framelet_samples * new_rays(wanted);
         }
     }
+    return wanted;
 }
 
 } // namespace framelet

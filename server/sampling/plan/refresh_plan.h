@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "server/sampling/plan/completion.h"
 #include "server/sampling/plan/moment/moment_refresh.h"
 #include "server/sampling/plan/view_state.h"
 
@@ -34,6 +35,7 @@ struct RefreshInput {
     std::size_t batch_framelets = 0;
     std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
     ResponseLimits limits{};
+    Completion completion{};
 };
 
 /// Rays that there is time to render for each sample that there is time to render and to send.
@@ -55,18 +57,19 @@ struct RefreshPlan {
     /// what the viewer shows already is not sent again.
     bool will_be_moved = false;
     ResponseLimits limits{}; ///< by which the plan was made
+    Completion completion{}; ///< likewise
     std::vector<Patch> patches;
     std::vector<std::size_t> tile_counts; ///< of each patch
     std::vector<Tile> tiles; ///< of the patches, in order
-    int rays_per_sample = single_ray; ///< of the tiles
+    int rays_per_sample = single_ray; ///< of the tiles, once they are rendered
     /// Positions at which what the moment shows is to be compared with what the viewer would show.
     std::optional<MomentChecks> checks;
     std::vector<Probe> probes;
 
     bool is_empty() const { return tiles.empty() && probes.empty() && !checks; }
-    /// Number of rays through the samples of the tiles.
+    /// Number of rays through the samples of the tiles, those that they had before not counted.
     std::size_t ray_count() const {
-        return tiles.size() * framelet_samples * static_cast<std::size_t>(rays_per_sample);
+        return tiles.size() * framelet_samples * static_cast<std::size_t>(new_rays(rays_per_sample));
     }
 };
 

@@ -41,7 +41,8 @@ std::size_t session_bytes(Viewport viewport, bool predicts) {
 }
 
 std::optional<std::string> SessionMemory::reserve(std::uint64_t session, Viewport viewport, bool predicts) {
-    std::size_t const wanted = session_bytes(viewport, predicts);
+    auto const pixels = static_cast<std::size_t>(viewport.width) * static_cast<std::size_t>(viewport.height);
+    std::size_t const wanted = session_bytes(viewport, predicts) + pixels * more_per_pixel_;
     std::size_t& own = sessions_[session];
     if (wanted <= own) {
         return std::nullopt;

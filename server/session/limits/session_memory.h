@@ -22,8 +22,9 @@ std::size_t session_bytes(Viewport viewport, bool predicts);
 
 class SessionMemory {
 public:
-    /// `budget`: bytes, for all sessions.
-    explicit SessionMemory(std::size_t budget) : budget_(budget) {}
+    /// `budget`: bytes, for all sessions. `more_per_pixel`: bytes of a pixel besides `session_bytes`.
+    explicit SessionMemory(std::size_t budget, std::size_t more_per_pixel = 0)
+        : budget_(budget), more_per_pixel_(more_per_pixel) {}
 
     /// Sets aside what the session takes with a picture of this size, or says in one line why not. What it has from a
     /// larger picture stays its own until it ends: memory is used again rather than given back.
@@ -34,7 +35,7 @@ public:
     void pass(std::uint64_t from, std::uint64_t to);
 
 private:
-    std::size_t const budget_;
+    std::size_t const budget_, more_per_pixel_;
     std::size_t reserved_ = 0;
     std::map<std::uint64_t, std::size_t> sessions_;
 };

@@ -71,14 +71,14 @@ std::uint8_t QpChoice::choose(LinkState const& link, double samples_per_second, 
     return qp_;
 }
 
-void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, bool finish,
+void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, int last_depth,
                 HeldTiles& held, std::vector<std::uint8_t>& qps) {
     FRAMELET_CHECK(tiles.size() == needed.size());
     qps.clear();
     for (std::size_t i = 0; i < tiles.size(); ++i) {
         bool const again = needed[i] == 0 && held.is_lossy(tiles[i]);
         if (needed[i] != 0 || again) {
-            bool const last = finish && tiles[i].depth() == held.plane().max_depth();
+            bool const last = tiles[i].depth() == last_depth;
             needed[i] = 1;
             qps.push_back(again || last ? lossless_qp : qp);
             held.set_lossy(tiles[i], qps.back() != lossless_qp);

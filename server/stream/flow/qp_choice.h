@@ -45,10 +45,10 @@ private:
 
 /// Chooses which framelets of a batch go to the viewer and how they are coded. `tiles`: of the picture of `held`, none
 /// over another. `needed`: what the scheduler says of each; those that are not needed, because the viewer shows the
-/// same, are added where it holds them with loss. `qp`: of the batch. `finish`: the picture stands still, and its
-/// finest tiles are the last that come: they are sent exactly. Replaces `qps` by one for each framelet that is sent, in
-/// order, or by none where all are exact; keeps account in `held`.
-void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, bool finish,
+/// same, are added where it holds them with loss. `qp`: of the batch. `last_depth`: of tiles that are the last
+/// that come, as the picture stands still: they are sent exactly; < 0: of none. Replaces `qps` by one for each framelet
+/// that is sent, in order, or by none where all are exact; keeps account in `held`.
+void choose_qps(std::span<Tile const> tiles, std::span<std::uint8_t> needed, std::uint8_t qp, int last_depth,
                 HeldTiles& held, std::vector<std::uint8_t>& qps);
 
 /// Samples a second that renderer and link both have time for.

@@ -217,7 +217,7 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionGrid const& regions, std:
     // The viewer has what is on its way, or has been rendered of this moment, whatever the mirror makes of it.
     int had = region.taken.level;
     if (region.rendered >= budget.moment_begun) {
-        had = std::max(had, shown_level(region.level, region.supersampled));
+        had = std::max(had, shown_level(region.level, region.rays_per_sample));
     }
     BiasWeights const weights(budget.bias);
     float const hole = std::max(weights.time, weights.space) * hole_error; // it is missing in space as in time

@@ -1,0 +1,149 @@
+#include "server/render/path/path_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/color.h"
+#include "common/error.h"
+#include "common/morton.h"
+#include "server/render/flush_denormals.h"
+#include "server/render/light/luminance.h"
+#include "server/render/path/path_random.h"
+#include "server/render/path/path_tracing.h"
+#include "server/render/view_packet.h"
+
+namespace framelet {
+namespace {
+
+/// Fewer paths of a sample say little of how much they differ.
+constexpr int telling_paths = 16;
+/// Pixels that a path covers in textures, as a share of the spacing of samples: many are averaged.
+constexpr float path_footprint = 0.25f;
+
+/// Traces path number `path` of each sample of a tile; `add(sample, radiance)` takes what it brings.
+template <class Add>
+void trace_pass(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Tile tile, int path, Add add) {
+    PixelRect const rect = plane.tile_rect(tile);
+    float const spacing = plane.sample_spacing(tile);
+    // In samples of the tile's level, so that with one a pixel these are the numbers of `render_paths`.
+    auto const left = static_cast<std::uint32_t>(static_cast<float>(rect.left) / spacing);
+    auto const top = static_cast<std::uint32_t>(static_cast<float>(rect.top) / spacing);
+    Footprint footprint;
+    footprint.width.fill(glm::length(view.origin_dx) * spacing * path_footprint);
+    footprint.slope.fill(glm::length(view.direction_dx) * spacing * path_footprint);
+    PathNumbers numbers;
+    LaneVec3 radiance;
+    for (int first = 0; first < framelet_samples; first += lanes) {
+        auto const position = [&](int i) {
+            auto const sample = static_cast<std::uint32_t>(first + i);
+            std::uint32_t const x = left + morton_x(sample), y = top + morton_y(sample);
+            numbers.pixel_seed[i] = hashed(hashed(light.options().seed, y), x);
+            numbers.sample[i] = static_cast<std::uint32_t>(path);
+            return (Vec2(x, y) + random_pair(numbers.pixel_seed[i], numbers.sample[i], 0)) * spacing;
+        };
+        RayPacket rays = rays_through(view, position);
+        trace_paths(light.scene(), light.options(), rays, all_lanes, footprint, numbers, radiance);
+        for (int i = 0; i < lanes; ++i) {
+            add(static_cast<std::size_t>(first) + static_cast<std::size_t>(i), radiance.get(i));
+        }
+    }
+}
+
+/// Luminance as a viewer sees it, without rounding, [0, 1].
+float shown_luminance(Vec3 const& radiance) {
+    return srgb_from_linear(luminance(tone_map(radiance)));
+}
+
+} // namespace
+
+LampSizes lamp_sizes(LightOptions const& light, Bounds const& bounds) {
+    constexpr float usual_metres = 0.1f, most_share = 0.01f;
+    float const size = bounds.empty() ? 0.0f : glm::length(bounds.size());
+    LampSizes sizes;
+    sizes.sun = 0.5f * light.sun_degrees * std::numbers::pi_v<float> / 180;
+    sizes.lamp = 0.5f * light.lamp_metres.value_or(std::min(usual_metres, most_share * size));
+    return sizes;
+}
+
+PathLight::PathLight(PreparedScene const& scene, LampSizes sizes) : scene_(std::make_unique<PathScene>(scene)) {
+    options_.sizes = sizes;
+}
+
+PathLight::~PathLight() = default;
+
+void PathLight::update() {
+    scene_->update();
+}
+
+void PathSums::hold(ImagePlane const& plane) {
+    if (empty() || plane.viewport() != plane_.viewport()) {
+        clear();
+        plane_ = plane;
+        columns_ = (plane.viewport().width + framelet_side - 1) / framelet_side;
+        int const rows = (plane.viewport().height + framelet_side - 1) / framelet_side;
+        tiles_.resize(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows));
+    }
+}
+
+TileSums& PathSums::operator[](Tile tile) {
+    FRAMELET_CHECK(tile.depth() == plane_.pixel_depth());
+    PixelRect const rect = plane_.tile_rect(tile);
+    int const column = rect.left / framelet_side, row = rect.top / framelet_side;
+    return tiles_.at(static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) +
+                     static_cast<std::size_t>(column));
+}
+
+void trace_first_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Framelet& out) {
+    FlushDenormals const flush;
+    trace_pass(light, view, plane, out.tile, 0, [&](std::size_t sample, Vec3 const& radiance) {
+        out.red[sample] = radiance.r;
+        out.green[sample] = radiance.g;
+        out.blue[sample] = radiance.b;
+    });
+}
+
+void trace_more_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, int paths, TileSums& sums,
+                      Framelet& out) {
+    FlushDenormals const flush;
+    if (sums.paths >= paths) {
+        sums = {};
+    }
+    for (; sums.paths < paths; ++sums.paths) {
+        trace_pass(light, view, plane, out.tile, sums.paths, [&](std::size_t sample, Vec3 const& radiance) {
+            sums.red[sample] += radiance.r;
+            sums.green[sample] += radiance.g;
+            sums.blue[sample] += radiance.b;
+            float const shade = luminance(radiance);
+            sums.squares[sample] += shade * shade;
+        });
+    }
+    float const share = 1 / static_cast<float>(paths);
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        out.red[i] = sums.red[i] * share;
+        out.green[i] = sums.green[i] * share;
+        out.blue[i] = sums.blue[i] * share;
+    }
+}
+
+float squared_error(TileSums const& sums, float exposure) {
+    if (sums.paths < telling_paths) {
+        return INFINITY;
+    }
+    auto const count = static_cast<float>(sums.paths);
+    float sum = 0;
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        Vec3 const mean = Vec3(sums.red[i], sums.green[i], sums.blue[i]) / count;
+        float const shade = luminance(mean);
+        float const variance = std::max(sums.squares[i] / count - shade * shade, 0.0f) / (count - 1);
+        if (variance > 0 && shade > 0) {
+            float const share = std::sqrt(variance) / shade; // of the radiance, which is never below 0
+            float const above = shown_luminance(mean * (exposure * (1 + share)));
+            float const below = shown_luminance(mean * (exposure * std::max(1 - share, 0.0f)));
+            sum += 0.25f * (above - below) * (above - below);
+        }
+    }
+    return sum / static_cast<float>(framelet_samples);
+}
+
+} // namespace framelet
