@@ -111,6 +111,17 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate")->type_name("FILE");
     app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
 
+    app.option_defaults()->group("Browsers");
+    CLI::Option* const no_web = app.add_flag("!--no-web", options.web, "Answer viewers alone: no page, no WebSockets");
+    app.add_option("--web-files", options.web_files, "Folder of the page for browsers, which the same port answers")
+        ->type_name("FOLDER")
+        ->excludes(no_web);
+    app.add_option("--web-origin", options.web_origin,
+                   "Let pages of this origin connect too, as https://HOST[:PORT]: where a proxy in front of the server "
+                   "has another name")
+        ->type_name("URL")
+        ->excludes(no_web);
+
     app.option_defaults()->group("Viewers");
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(number_in(1, 1024))

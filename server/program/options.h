@@ -32,6 +32,9 @@ struct Options {
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
     std::optional<std::uint16_t> metrics_port; ///< nothing: none
     std::string metrics_bind = "127.0.0.1";
+    bool web = true; ///< browsers may be viewers
+    std::filesystem::path web_files; ///< folder of their page; empty: there is none
+    std::string web_origin; ///< of pages elsewhere that may connect; empty: none
     ServerOptions server;
 };
 
