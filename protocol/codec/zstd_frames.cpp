@@ -124,7 +124,7 @@ std::span<std::uint8_t const> FrameCodec::decompress(ByteView frame) {
     if (!decompressor_) {
         decompressor_.reset(made(ZSTD_createDCtx()));
     }
-    std::size_t const size = ZSTD_getFrameContentSize(frame.data(), frame.size());
+    auto const size = static_cast<std::size_t>(ZSTD_getFrameContentSize(frame.data(), frame.size()));
     content_.resize(size);
     if (ZSTD_decompressDCtx(decompressor_.get(), content_.data(), size, frame.data(), frame.size()) != size) {
         throw ProtocolError("a group of a batch cannot be decompressed");

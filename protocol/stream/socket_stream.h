@@ -10,7 +10,6 @@
 #include <memory>
 #include <new>
 #include <string>
-#include <type_traits>
 #include <utility>
 
 #include <boost/asio/any_io_executor.hpp>
@@ -25,6 +24,7 @@
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
+#include "protocol/stream/door_stream.h"
 #include "protocol/stream/framed_stream.h"
 #include "protocol/stream/handler_slot.h"
 #include "protocol/stream/message_frame.h"
@@ -36,7 +36,14 @@ namespace framelet {
 
 namespace asio = boost::asio;
 
-/// A connection over `Stream`: asio's TCP socket, or its TLS stream over one.
+template <typename Stream>
+inline constexpr bool is_secure = false;
+template <typename Next>
+inline constexpr bool is_secure<asio::ssl::stream<Next>> = true;
+template <typename Next>
+inline constexpr bool is_secure<DoorStream<Next>> = is_secure<Next>;
+
+/// A connection over `Stream`: asio's TCP socket, or its TLS stream over one, or a DoorStream over either.
 template <typename Stream>
 class SocketStream final : public FramedStream {
     using Socket = asio::ip::tcp::socket;
@@ -45,7 +52,7 @@ class SocketStream final : public FramedStream {
 public:
     static constexpr std::chrono::seconds handshake_time{10};
     static constexpr std::chrono::seconds ending_time{1};
-    static constexpr bool secure = std::is_same_v<Stream, asio::ssl::stream<Socket>>;
+    static constexpr bool secure = is_secure<Stream>;
 
     /// `peer`: address of the other side. `role` and `handshakes`, by which the handshake is computed, have a meaning
     /// for TLS only.

@@ -10,6 +10,7 @@
 #include <netinet/tcp.h>
 #endif
 
+#include "protocol/stream/door_stream.h"
 #include "protocol/stream/socket_stream.h"
 #include "protocol/stream/tls.h"
 
@@ -23,7 +24,7 @@ using SecureStream = asio::ssl::stream<StreamSocket>;
 [[maybe_unused]] constexpr int most_unsent_bytes = 128 << 10;
 
 /// Sets the options of a socket. Errors are ignored: the peer may be gone already, which reading will find out.
-void set_options(StreamSocket& socket) {
+void set_options(StreamSocket::lowest_layer_type& socket) {
     boost::system::error_code ignored;
     socket.set_option(asio::ip::tcp::no_delay(true), ignored);
 #ifdef TCP_NOTSENT_LOWAT
@@ -32,7 +33,7 @@ void set_options(StreamSocket& socket) {
 #endif
 }
 
-std::string address_of(StreamSocket const& socket) {
+std::string address_of(StreamSocket::lowest_layer_type const& socket) {
     boost::system::error_code error;
     auto const endpoint = socket.remote_endpoint(error);
     std::ostringstream text;
@@ -49,28 +50,30 @@ void require_error_queue() {
     }
 }
 
-std::shared_ptr<FramedStream> secure_stream(SecureStream stream, asio::ssl::stream_base::handshake_type role,
-                                            asio::any_io_executor handshakes) {
-    set_options(stream.next_layer());
-    std::string peer = address_of(stream.next_layer());
-    return std::make_shared<SocketStream<SecureStream>>(std::move(stream), std::move(peer), role,
-                                                        std::move(handshakes));
+template <typename Stream>
+std::shared_ptr<FramedStream> stream_of(Stream stream, asio::ssl::stream_base::handshake_type role,
+                                        asio::any_io_executor handshakes, std::shared_ptr<WebPage const> page) {
+    set_options(stream.lowest_layer());
+    std::string peer = address_of(stream.lowest_layer());
+    if (page) {
+        DoorStream<Stream> door(std::move(stream), std::move(page));
+        return std::make_shared<SocketStream<DoorStream<Stream>>>(std::move(door), std::move(peer), role,
+                                                                  std::move(handshakes));
+    }
+    return std::make_shared<SocketStream<Stream>>(std::move(stream), std::move(peer), role, std::move(handshakes));
 }
 
 } // namespace
 
-std::shared_ptr<FramedStream> plain_stream(StreamSocket socket) {
-    set_options(socket);
-    std::string peer = address_of(socket);
-    return std::make_shared<SocketStream<StreamSocket>>(std::move(socket), std::move(peer),
-                                                        asio::ssl::stream_base::client, asio::any_io_executor());
+std::shared_ptr<FramedStream> plain_stream(StreamSocket socket, std::shared_ptr<WebPage const> page) {
+    return stream_of(std::move(socket), asio::ssl::stream_base::client, {}, std::move(page));
 }
 
 std::shared_ptr<FramedStream> tls_server_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
-                                                asio::any_io_executor handshakes) {
+                                                asio::any_io_executor handshakes, std::shared_ptr<WebPage const> page) {
     require_error_queue();
-    return secure_stream(SecureStream(std::move(socket), *context), asio::ssl::stream_base::server,
-                         std::move(handshakes));
+    return stream_of(SecureStream(std::move(socket), *context), asio::ssl::stream_base::server, std::move(handshakes),
+                     std::move(page));
 }
 
 std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared_ptr<asio::ssl::context> const& context,
@@ -79,7 +82,7 @@ std::shared_ptr<FramedStream> tls_client_stream(StreamSocket socket, std::shared
     SecureStream stream(std::move(socket), *context);
     require_host(stream.native_handle(), host);
     asio::any_io_executor own = stream.get_executor();
-    return secure_stream(std::move(stream), asio::ssl::stream_base::client, std::move(own));
+    return stream_of(std::move(stream), asio::ssl::stream_base::client, std::move(own), {});
 }
 
 } // namespace framelet

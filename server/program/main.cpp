@@ -25,6 +25,7 @@
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
+#include "protocol/stream/web_door.h"
 #include "server/program/options.h"
 #include "server/program/progress_bar.h"
 #include "server/program/shell_word.h"
@@ -57,6 +58,11 @@ void read_files(Options& options) {
             spdlog::warn("every user of this machine can read --tls-key '{}': take that right from others (chmod o=)",
                          server.tls_key);
         }
+    }
+    if (!options.web_files.empty()) {
+        WebPage page = read_web_page(options.web_files);
+        page.origin = options.web_origin;
+        server.web = std::make_shared<WebPage>(std::move(page));
     }
 }
 

@@ -127,6 +127,17 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate")->type_name("FILE");
     app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
 
+    app.option_defaults()->group("Browsers");
+    CLI::Option* const web_files =
+        app.add_option("--web-files", options.web_files,
+                       "Folder of a page for browsers, which the same port then answers, and WebSockets with it")
+            ->type_name("FOLDER");
+    app.add_option("--web-origin", options.web_origin,
+                   "Let pages of this origin connect too, as https://HOST[:PORT]: where a proxy in front of the server "
+                   "has another name")
+        ->type_name("URL")
+        ->needs(web_files);
+
     app.option_defaults()->group("Viewers");
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
         ->check(number_in(1, 1024))

@@ -33,6 +33,8 @@ struct Options {
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
     std::optional<std::uint16_t> metrics_port; ///< nothing: none
     std::string metrics_bind = "127.0.0.1";
+    std::filesystem::path web_files; ///< folder of the page for browsers; empty: these are not answered
+    std::string web_origin; ///< of pages elsewhere that may connect; empty: none
     ServerOptions server;
 };
 

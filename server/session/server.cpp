@@ -177,8 +177,8 @@ struct Server::Impl {
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;
         connection.source = source;
-        connection.stream =
-            tls ? tls_server_stream(std::move(socket), tls, handshakes->executor()) : plain_stream(std::move(socket));
+        connection.stream = tls ? tls_server_stream(std::move(socket), tls, handshakes->executor(), options.web)
+                                : plain_stream(std::move(socket), options.web);
         connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
         auto const session = connection.session;
         auto const delay = admission.delay(source, steady_clock::now());

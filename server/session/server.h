@@ -13,6 +13,8 @@
 
 namespace framelet {
 
+struct WebPage;
+
 class Listener;
 struct LoadedScene;
 
@@ -24,6 +26,7 @@ struct ServerOptions {
     bool shared_control = false; ///< every viewer may set the scene's clock
     std::string tls_certificate; ///< PEM file; empty: no TLS
     std::string tls_key; ///< PEM file
+    std::shared_ptr<WebPage const> web; ///< the page for browsers; null: browsers are no viewers
     std::size_t max_sessions = 8;
     std::size_t session_megabytes = 4096; ///< what the pictures of all viewers may take together
     bool paused = false; ///< the scene clock stands at 0 at first

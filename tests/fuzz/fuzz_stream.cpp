@@ -1,5 +1,5 @@
 // Reads what arrives on a connection, byte by byte, from one who sends it all at once and then says no more. Input: one
-// byte, whether it is a viewer that listens; what the peer sends.
+// byte, whether it is a viewer that listens, and whether a browser may be one; what the peer sends.
 #include <span>
 
 #include <boost/asio/write.hpp>
@@ -8,6 +8,7 @@
 
 #include "common/error.h"
 #include "protocol/stream/stream_opening.h"
+#include "protocol/stream/web_door.h"
 
 extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
     using namespace framelet;
@@ -22,7 +23,12 @@ extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size
     boost::asio::write(peer, boost::asio::buffer(data + 1, size - 1)); // the system's buffer holds it
     peer.shutdown(tcp::socket::shutdown_send);
 
-    auto const stream = plain_stream(tcp::socket(io, tcp::v4(), ends[0]));
+    std::shared_ptr<WebPage> page;
+    if ((data[0] & 2) != 0) {
+        page = std::make_shared<WebPage>();
+        page->files = {{"index.html", "page", "zip", "\"1\""}};
+    }
+    auto const stream = plain_stream(tcp::socket(io, tcp::v4(), ends[0]), page);
     bool closed = false;
     FramedStream::Handlers handlers;
     handlers.on_message = [&, listens = data[0] % 2 != 0](Message const& message) {

@@ -7,14 +7,19 @@
 
 #include "common/error.h"
 #include "protocol/messages/message_codec.h"
+#include "protocol/stream/web_door.h"
 #include "random_message.h"
 #include "stream_pair.h"
 
 namespace framelet {
 namespace {
 
-class FramedStreamTest : public testing::Test {
+/// With and without a door that takes browsers too.
+class FramedStreamTest : public testing::TestWithParam<bool> {
 protected:
+    static std::shared_ptr<FramedStream> opened(Socket socket) {
+        return plain_stream(std::move(socket), GetParam() ? std::make_shared<WebPage>() : nullptr);
+    }
     void write(Bytes const& bytes) { boost::asio::write(raw, boost::asio::buffer(bytes)); }
     /// The Failure that the stream sent as its only message.
     std::string failure_sent() {
@@ -25,8 +30,9 @@ protected:
     IoThread thread_;
     std::pair<Socket, Socket> sockets_ = thread_.connect();
     Socket& raw = sockets_.first; ///< the other side, bare
-    End end{plain_stream(std::move(sockets_.second))};
+    End end{opened(std::move(sockets_.second))};
 };
+INSTANTIATE_TEST_SUITE_P(Door, FramedStreamTest, testing::Bool());
 
 TEST(FramedStream, ManyMessagesBothWays) {
     IoThread thread;
@@ -109,7 +115,7 @@ TEST(FramedStream, LargeMessagesAndTheirCount) {
     EXPECT_TRUE(End::eventually([&] { return left.stream->unsent_bytes() == 0; }));
 }
 
-TEST_F(FramedStreamTest, OversizedMessageIsRefusedBeforeItComes) {
+TEST_P(FramedStreamTest, OversizedMessageIsRefusedBeforeItComes) {
     end.start(thread_, max_upstream_message_bytes);
     Bytes prefix(4);
     prefix[2] = std::byte{2}; // 131072
@@ -120,13 +126,16 @@ TEST_F(FramedStreamTest, OversizedMessageIsRefusedBeforeItComes) {
     EXPECT_TRUE(end.messages().empty());
 }
 
-TEST_F(FramedStreamTest, LargestPrefixIsRefused) {
+TEST_P(FramedStreamTest, LargestPrefixIsRefused) {
     end.start(thread_);
     write(Bytes(4, std::byte{0xff}));
     EXPECT_EQ(end.wait_for_close(), "a message of 4294967295 bytes exceeds the limit of 67108864");
 }
 
-TEST_F(FramedStreamTest, AnotherProgramIsSaidToBeOne) {
+TEST_P(FramedStreamTest, AnotherProgramIsSaidToBeOne) {
+    if (GetParam()) {
+        GTEST_SKIP() << "it is taken for a browser";
+    }
     end.start(thread_);
     Bytes answer(4);
     std::memcpy(answer.data(), "HTTP", 4);
@@ -134,7 +143,7 @@ TEST_F(FramedStreamTest, AnotherProgramIsSaidToBeOne) {
     EXPECT_EQ(end.wait_for_close(), "the other side is no framelet program, it says \"HTTP\": is that the right port?");
 }
 
-TEST_F(FramedStreamTest, LimitCanChange) {
+TEST_P(FramedStreamTest, LimitCanChange) {
     end.start(thread_, 100);
     boost::asio::post(thread_.io, [stream = end.stream] { stream->set_max_body(10000); });
     // The new limit is in force once a message has come through that was sent after it was set.
@@ -144,7 +153,7 @@ TEST_F(FramedStreamTest, LimitCanChange) {
     EXPECT_TRUE(end.wait_for_messages(2));
 }
 
-TEST_F(FramedStreamTest, WhateverFailsForAMessageEndsThatConnection) {
+TEST_P(FramedStreamTest, WhateverFailsForAMessageEndsThatConnection) {
     std::promise<std::string> ended;
     boost::asio::post(thread_.io, [&] {
         end.stream->start({[](Message const&) { throw std::runtime_error("it cannot be done"); },
@@ -157,7 +166,7 @@ TEST_F(FramedStreamTest, WhateverFailsForAMessageEndsThatConnection) {
     EXPECT_EQ(failure_sent(), "it cannot be done");
 }
 
-TEST_F(FramedStreamTest, GarbageIsRefused) {
+TEST_P(FramedStreamTest, GarbageIsRefused) {
     end.start(thread_);
     write(framed(Bytes(40, std::byte{0x55})));
     EXPECT_EQ(end.wait_for_close(), "a message is not well-formed");
@@ -165,13 +174,13 @@ TEST_F(FramedStreamTest, GarbageIsRefused) {
     EXPECT_FALSE(end.stream->was_cut());
 }
 
-TEST_F(FramedStreamTest, EmptyMessageIsRefused) {
+TEST_P(FramedStreamTest, EmptyMessageIsRefused) {
     end.start(thread_);
     write(Bytes(4));
     EXPECT_EQ(end.wait_for_close(), "a message is not well-formed");
 }
 
-TEST_F(FramedStreamTest, RandomBytesNeverGetThrough) {
+TEST_P(FramedStreamTest, RandomBytesNeverGetThrough) {
     end.start(thread_, 1000);
     RandomMessages random(3);
     Bytes bytes(100000);
@@ -184,7 +193,7 @@ TEST_F(FramedStreamTest, RandomBytesNeverGetThrough) {
     EXPECT_FALSE(failure_sent().empty()) << "the answer arrives although much was never read";
 }
 
-TEST_F(FramedStreamTest, TlsBytesAreNamed) {
+TEST_P(FramedStreamTest, TlsBytesAreNamed) {
     end.start(thread_, 65536);
     write({std::byte{22}, std::byte{3}, std::byte{1}, std::byte{2}, std::byte{0}});
     auto const reason = end.wait_for_close();
@@ -192,7 +201,7 @@ TEST_F(FramedStreamTest, TlsBytesAreNamed) {
     EXPECT_NE(reason->find("the other side uses TLS"), std::string::npos) << *reason;
 }
 
-TEST_F(FramedStreamTest, HandlerMayRefuse) {
+TEST_P(FramedStreamTest, HandlerMayRefuse) {
     auto const reason = std::make_shared<std::promise<std::string>>();
     boost::asio::post(thread_.io, [stream = end.stream, reason] {
         stream->start({[](Message const&) { throw ProtocolError("not now"); },
@@ -205,7 +214,7 @@ TEST_F(FramedStreamTest, HandlerMayRefuse) {
     EXPECT_EQ(failure_sent(), "not now");
 }
 
-TEST_F(FramedStreamTest, WhatCannotBeSentEndsTheConnection) {
+TEST_P(FramedStreamTest, WhatCannotBeSentEndsTheConnection) {
     end.start(thread_);
     ClockRequest const late{ClockRequest::time, {8e16, true, 1}};
     EXPECT_EQ(end.stream->send(late), 0u);
@@ -217,7 +226,7 @@ TEST_F(FramedStreamTest, WhatCannotBeSentEndsTheConnection) {
     EXPECT_EQ(end.closes(), 1);
 }
 
-TEST_F(FramedStreamTest, TooLargeAMessageEndsTheConnection) {
+TEST_P(FramedStreamTest, TooLargeAMessageEndsTheConnection) {
     end.start(thread_);
     EXPECT_EQ(end.stream->send(large_batch(1, max_message_bytes)), 0u);
     auto const reason = end.wait_for_close();
@@ -226,7 +235,7 @@ TEST_F(FramedStreamTest, TooLargeAMessageEndsTheConnection) {
     EXPECT_EQ(failure_sent(), *reason);
 }
 
-TEST_F(FramedStreamTest, OfWaitingStatusTheNewestIsSent) {
+TEST_P(FramedStreamTest, OfWaitingStatusTheNewestIsSent) {
     end.start(thread_);
     end.stream->send(large_batch(1, 20u << 20)); // more than the socket takes while nobody reads
     std::size_t const before = end.stream->unsent_bytes();
@@ -246,7 +255,7 @@ TEST_F(FramedStreamTest, OfWaitingStatusTheNewestIsSent) {
     EXPECT_EQ(std::get<Ack>(all[2]).batch, 7u);
 }
 
-TEST_F(FramedStreamTest, TooMuchThatWaitsEndsTheConnection) {
+TEST_P(FramedStreamTest, TooMuchThatWaitsEndsTheConnection) {
     end.start(thread_);
     std::uint64_t sent = 0;
     while (sent < 10 && end.stream->send(large_batch(sent + 1, 30u << 20)) != 0) {
@@ -262,7 +271,7 @@ TEST_F(FramedStreamTest, TooMuchThatWaitsEndsTheConnection) {
     EXPECT_EQ(std::get<Failure>(all[1]).text, *reason);
 }
 
-TEST_F(FramedStreamTest, PeerCloses) {
+TEST_P(FramedStreamTest, PeerCloses) {
     end.start(thread_);
     write(framed(encode_message(Ack{1, 2, 3})));
     raw.close();
@@ -275,11 +284,11 @@ TEST_F(FramedStreamTest, PeerCloses) {
     EXPECT_EQ(end.closes(), 1);
 }
 
-TEST_F(FramedStreamTest, PeerVanishesInTheMiddle) {
+TEST_P(FramedStreamTest, PeerVanishesInTheMiddle) {
     Bytes const whole = framed(encode_message(Ack{1, 2, 3}));
     for (std::size_t const size : {std::size_t{1}, std::size_t{4}, whole.size() - 1}) {
         auto [one, two] = thread_.connect();
-        End other(plain_stream(std::move(two)));
+        End other(opened(std::move(two)));
         other.start(thread_);
         boost::asio::write(one, boost::asio::buffer(whole, size));
         one.close();
@@ -288,14 +297,14 @@ TEST_F(FramedStreamTest, PeerVanishesInTheMiddle) {
     }
 }
 
-TEST_F(FramedStreamTest, PeerResets) {
+TEST_P(FramedStreamTest, PeerResets) {
     end.start(thread_);
     raw.set_option(boost::asio::socket_base::linger(true, 0));
     raw.close();
     EXPECT_EQ(end.wait_for_close(), "connection reset by the other side");
 }
 
-TEST_F(FramedStreamTest, PeerVanishesWhileMuchIsQueued) {
+TEST_P(FramedStreamTest, PeerVanishesWhileMuchIsQueued) {
     end.start(thread_);
     for (std::uint64_t i = 1; i <= 20; ++i) {
         end.stream->send(large_batch(i, 4u << 20));
@@ -306,7 +315,7 @@ TEST_F(FramedStreamTest, PeerVanishesWhileMuchIsQueued) {
     EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
 }
 
-TEST_F(FramedStreamTest, CloseDuringSend) {
+TEST_P(FramedStreamTest, CloseDuringSend) {
     end.start(thread_);
     for (std::uint64_t i = 1; i <= 20; ++i) {
         end.stream->send(large_batch(i, 4u << 20)); // more than the socket takes
@@ -320,11 +329,11 @@ TEST_F(FramedStreamTest, CloseDuringSend) {
     EXPECT_EQ(end.closes(), 0) << "our own close is not reported";
 }
 
-TEST_F(FramedStreamTest, CloseFromOtherThreadsWhileMessagesArrive) {
+TEST_P(FramedStreamTest, CloseFromOtherThreadsWhileMessagesArrive) {
     for (int round = 0; round < 30; ++round) {
         auto [one, two] = thread_.connect();
-        End left(plain_stream(std::move(one)));
-        End right(plain_stream(std::move(two)));
+        End left(opened(std::move(one)));
+        End right(opened(std::move(two)));
         left.start(thread_);
         right.start(thread_);
         std::vector<std::thread> threads;
@@ -346,14 +355,14 @@ TEST_F(FramedStreamTest, CloseFromOtherThreadsWhileMessagesArrive) {
     }
 }
 
-TEST_F(FramedStreamTest, CloseBeforeStart) {
+TEST_P(FramedStreamTest, CloseBeforeStart) {
     end.stream->close();
     end.start(thread_);
     EXPECT_TRUE(read_to_end(raw).empty());
     EXPECT_TRUE(end.is_released());
 }
 
-TEST_F(FramedStreamTest, CloseInsideAHandler) {
+TEST_P(FramedStreamTest, CloseInsideAHandler) {
     auto const called = std::make_shared<std::promise<void>>();
     auto const kept = std::make_shared<int>(1);
     boost::asio::post(thread_.io, [stream = end.stream, called, kept] {
@@ -374,7 +383,7 @@ TEST_F(FramedStreamTest, CloseInsideAHandler) {
     EXPECT_TRUE(End::eventually([&] { return kept.use_count() == 1; }));
 }
 
-TEST_F(FramedStreamTest, CloseAfterSendingSendsAll) {
+TEST_P(FramedStreamTest, CloseAfterSendingSendsAll) {
     end.start(thread_);
     Bytes expected;
     for (std::uint64_t i = 1; i <= 10; ++i) {
@@ -391,7 +400,7 @@ TEST_F(FramedStreamTest, CloseAfterSendingSendsAll) {
     EXPECT_EQ(end.closes(), 0);
 }
 
-TEST_F(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
+TEST_P(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
     end.start(thread_);
     for (std::uint64_t i = 1; i <= 20; ++i) {
         end.stream->send(large_batch(i, 4u << 20));
@@ -400,11 +409,11 @@ TEST_F(FramedStreamTest, CloseAfterSendingDoesNotWaitForever) {
     EXPECT_TRUE(End::eventually([&] { return end.stream->unsent_bytes() == 0; }));
 }
 
-TEST_F(FramedStreamTest, LastWordArrivesAlthoughThePeerTalks) {
+TEST_P(FramedStreamTest, LastWordArrivesAlthoughThePeerTalks) {
     for (int round = 0; round < 20; ++round) {
         auto [one, two] = thread_.connect();
-        End server(plain_stream(std::move(one)));
-        End client(plain_stream(std::move(two)));
+        End server(opened(std::move(one)));
+        End client(opened(std::move(two)));
         server.start(thread_);
         client.start(thread_);
         client.stream->send(Ack{});

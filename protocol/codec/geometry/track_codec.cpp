@@ -207,7 +207,7 @@ BodyTrack take_track(ByteCursor& bytes) {
     if (body > std::uint64_t{std::numeric_limits<BodyNumber>::max()} || count > max_track_keys) {
         throw ProtocolError("a track has too many keys or is of an unknown body");
     }
-    std::vector<KeyNumbers> keys(count);
+    std::vector<KeyNumbers> keys(static_cast<std::size_t>(count));
     for (Member const& member : members) {
         std::uint8_t const unit = bytes.take(1)[0];
         if (unit > exact) {
