@@ -34,6 +34,8 @@ worker.onmessage = event => {
         const address = new URL('session', location.href.split(/[?#]/)[0]);
         address.protocol = address.protocol.replace('http', 'ws');
         tell('begin', token, address.href);
+        tell('exposure', Number(part('exposure').value)); // browsers keep it where a page is loaded again
+        tell('pause', document.hidden);
         ask();
         return;
     }

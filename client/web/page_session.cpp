@@ -109,7 +109,7 @@ std::optional<double> PageSession::close(std::string const& reason, double chanc
     if (reason_.empty()) {
         reason_ = reason;
     }
-    if (was_open) {
+    if (was_open && core_) {
         connection_.handlers.on_interrupted(reason_);
     }
     return is_refused_ ? std::nullopt : std::optional(back_off_.next(chance));

@@ -52,7 +52,8 @@ public:
     std::string state() const;
 
 private:
-    /// Where frames begin, to be one after the other. Throws ProtocolError.
+    /// Takes the frames of the inbox that are whole. Throws ProtocolError, and ConnectionError where the server ends or
+    /// refuses the session.
     void take_frames();
     void take(Message message);
     void welcome(Welcome greeting);

@@ -99,5 +99,5 @@ function paint(width, height) {
     postMessage(answer, answer.picture ? [answer.picture.pixels.buffer] : []);
 }
 
-onmessage = event => does[event.data[0]](...event.data.slice(1));
+onmessage = event => core && does[event.data[0]](...event.data.slice(1)); // the page begins once it is ready
 importScripts('framelet.js');

@@ -2,6 +2,7 @@
 """The page in a real browser, of a real server: page_test.py SERVER CLIENT PAGE SCENE FOLDER.
 
 FOLDER gets the screenshots. Exit code 77 where there is no browser here."""
+import base64
 import os
 import pathlib
 import shutil
@@ -61,8 +62,12 @@ class Page(unittest.TestCase):
         for entry in self.browser.get_log('browser'):
             print(entry['level'], entry['message'])
         self.browser.quit()
+        self.end_server()
+
+    def end_server(self):
         self.server.kill()
         self.server.wait()
+        self.server.stdout.close()
 
     def open(self, with_token=token):
         self.browser.get(f'http://127.0.0.1:{self.port}/#token={with_token}')
@@ -90,7 +95,6 @@ class Page(unittest.TestCase):
             'const p = c.getContext("2d").getImageData(0, 0, c.width, c.height).data; let text = "";'
             'for (let i = 0; i < p.length; i += 8192) text += String.fromCharCode(...p.subarray(i, i + 8192));'
             'return [btoa(text), c.width, c.height]')
-        import base64
         data = bytearray(base64.b64decode(rgba))
         del data[3::4]
         return bytes(data), width, height
@@ -120,6 +124,12 @@ class Page(unittest.TestCase):
         self.assertEqual(zlib.crc32(pixels), zlib.crc32(native[0]))
         self.assertGreater(len(set(pixels)), 20)  # it shows something
 
+    def stand(self):
+        """Stops the scene's clock and waits for a finished picture."""
+        if self.wait(lambda s: s.get('pictures', 0) > 0)['playing']:
+            self.click('play')
+        self.wait(lambda s: not s['playing'] and s['complete'])
+
     def test_plays_and_pauses(self):
         self.open()
         if not self.wait(lambda s: s.get('pictures', 0) > 0)['playing']:
@@ -133,21 +143,52 @@ class Page(unittest.TestCase):
 
     def test_a_drag_orbits(self):
         self.open()
-        self.wait(lambda s: s.get('pictures', 0) > 0)
-        if self.state()['playing']:
-            self.click('play')
-        self.wait(lambda s: not s['playing'] and s['complete'])
+        self.stand()
         before = self.pixels()[0]
         canvas = self.browser.find_element('id', 'picture')
         webdriver.ActionChains(self.browser).click_and_hold(canvas).move_by_offset(90, 20).release().perform()
         self.wait(lambda s: s['camera'] == -1 and s['complete'])
         self.assertNotEqual(before, self.pixels()[0])
 
+    def test_exposure_makes_it_brighter(self):
+        self.open()
+        self.stand()
+        before = sum(self.pixels()[0])
+        self.browser.execute_script('const e = document.getElementById("exposure"); e.value = 2;'
+                                    'e.dispatchEvent(new Event("input"))')
+        end = time.monotonic() + most_seconds
+        while sum(self.pixels()[0]) < 1.2 * before and time.monotonic() < end:
+            time.sleep(0.2)
+        self.assertGreater(sum(self.pixels()[0]), 1.2 * before)
+
+    def test_one_finger_orbits_and_two_go_nearer_on_a_small_screen(self):
+        command = self.browser.execute_cdp_cmd
+        command('Emulation.setDeviceMetricsOverride', {'width': 390, 'height': 844, 'deviceScaleFactor': 2,
+                                                       'mobile': True})
+        command('Emulation.setTouchEmulationEnabled', {'enabled': True, 'maxTouchPoints': 2})
+        self.open()
+        self.stand()
+        before, width, _ = self.pixels()
+        self.assertEqual(width, 780)  # device pixels
+
+        def touch(*moves):
+            for kind, points in zip(['touchStart'] + ['touchMove'] * (len(moves) - 1), moves):
+                command('Input.dispatchTouchEvent',
+                        {'type': kind, 'touchPoints': [{'x': x, 'y': y, 'id': i} for i, (x, y) in enumerate(points)]})
+            command('Input.dispatchTouchEvent', {'type': 'touchEnd', 'touchPoints': []})
+        touch([(200, 300)], [(230, 300)], [(260, 300)])
+        self.wait(lambda s: s['camera'] == -1 and s['complete'])
+        orbited = self.pixels()[0]
+        self.assertNotEqual(before, orbited)
+        touch([(150, 300), (250, 300)], [(130, 300), (270, 300)], [(100, 300), (300, 300)])
+        time.sleep(1)
+        self.wait(lambda s: s['complete'])
+        self.assertNotEqual(orbited, self.pixels()[0])
+
     def test_finds_a_server_again_that_was_killed(self):
         self.open()
         before = self.wait(lambda s: s.get('pictures', 0) > 0)
-        self.server.kill()
-        self.server.wait()
+        self.end_server()
         self.wait(lambda s: s['reason'])
         self.assertIn('trying to connect again', self.notice())
         self.server, _ = make_server(self.port)
