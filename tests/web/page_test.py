@@ -163,13 +163,13 @@ class Page(unittest.TestCase):
 
     def test_one_finger_orbits_and_two_go_nearer_on_a_small_screen(self):
         command = self.browser.execute_cdp_cmd
-        command('Emulation.setDeviceMetricsOverride', {'width': 390, 'height': 844, 'deviceScaleFactor': 2,
+        command('Emulation.setDeviceMetricsOverride', {'width': 390, 'height': 844, 'deviceScaleFactor': 1.5,
                                                        'mobile': True})
         command('Emulation.setTouchEmulationEnabled', {'enabled': True, 'maxTouchPoints': 2})
         self.open()
         self.stand()
         before, width, _ = self.pixels()
-        self.assertEqual(width, 780)  # device pixels
+        self.assertEqual(width, 585)  # device pixels
 
         def touch(*moves):
             for kind, points in zip(['touchStart'] + ['touchMove'] * (len(moves) - 1), moves):
@@ -184,6 +184,8 @@ class Page(unittest.TestCase):
         time.sleep(1)
         self.wait(lambda s: s['complete'])
         self.assertNotEqual(orbited, self.pixels()[0])
+        self.assertLessEqual(self.browser.execute_script(
+            'return document.getElementById("statistics").getBoundingClientRect().right'), 390)
 
     def test_finds_a_server_again_that_was_killed(self):
         self.open()
