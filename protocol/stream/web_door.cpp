@@ -192,8 +192,7 @@ std::optional<WebResponse> web_answer(WebRequest const& request, WebPage const& 
     auto const file =
         std::find_if(page.files.begin(), page.files.end(), [&](WebFile const& f) { return f.name == wanted; });
     if (file == page.files.end()) {
-        return text_answer(http::status::not_found,
-                           page.files.empty() ? "a framelet-server, without the page for browsers\n" : "no such\n");
+        return text_answer(http::status::not_found, "no such\n");
     }
     return file_answer(request, *file);
 }

@@ -2,13 +2,13 @@
 
 #include <chrono>
 #include <cstdio>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "client/core/camera/camera_path.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
+#include "server/render/path/path_light.h"
 #include "server/render/path/path_picture.h"
 
 namespace framelet::bench {
@@ -48,8 +48,7 @@ json write_reference_picture(std::filesystem::path const& file, Viewport viewpor
         write_png(options.output, render_picture(*scene->render_scene, camera, viewport, exposure, 4));
     } else {
         PathOptions paths = options.paths;
-        paths.sizes.sun = 0.5f * options.sun_degrees * std::numbers::pi_v<float> / 180;
-        paths.sizes.lamp = 0.5f * options.lamp_metres;
+        paths.sizes = lamp_sizes({LightMethod::reference, options.sun_degrees, options.lamp_metres}, {});
         FloatImage const radiance = render_paths(*scene->render_scene, camera, viewport, paths);
         glm::dvec3 sum(0);
         for (Vec3 const& pixel : radiance.rgb) {
