@@ -75,8 +75,10 @@ int main(int argc, char** argv) {
         ->type_name("SCENE")
         ->expected(1)
         ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
-    app.add_option("--camera", camera_file,
-                   "Camera file (JSON) to begin with, as C in the window copies it; of a flight its beginning")
+    app.add_option(
+           "--camera", camera_file,
+           "Camera file (JSON) to begin with, as C in the window copies it; of a flight its beginning; or an address "
+           "of the web page, of which its camera counts")
         ->type_name("FILE")
         ->default_str("the scene's own view");
     CLI::Option const* const sized =

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing of packages_viewer.txt, packages.txt, packages_tests.txt and the lists
-# named as arguments, all in this folder; with --viewer of the first alone, with --programs of the first two. Quiet and
-# quick where none is missing.
+# named as arguments, all in this folder; with --viewer of the first alone, with --programs of the first two and those
+# lists. Quiet and quick where none is missing.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 case "${1:-}" in
 --viewer) lists=(packages_viewer.txt) ;;
---programs) lists=(packages_viewer.txt packages.txt) ;;
+--programs) lists=(packages_viewer.txt packages.txt "${@:2}") ;;
 *) lists=(packages_viewer.txt packages.txt packages_tests.txt "$@") ;;
 esac
 missing=()

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <string>
 
 #include "common/math.h"
 
@@ -35,6 +36,29 @@ inline void tone_map(float& red, float& green, float& blue) {
     blue = to_unit(blue * scale * (1 - white) + new_peak * white);
 }
 
+enum class ToneCurve : std::uint8_t {
+    neutral, ///< as above
+    aces, ///< the film look of ACES as [Hill 2017] fits it; as bright as three.js and model-viewer have it
+    agx, ///< [Sobotka 2023] as Blender has it without a look, its contrast by the polynomial of [Wrensch 2023]
+    linear, ///< as it is, cut off at 1
+};
+/// The curve of this name. Throws InputError for other words.
+ToneCurve parse_tone_curve(std::string const& word);
+/// Applies a curve. In: linear Rec.709 colour, >= 0. Out: [0, 1].
+Vec3 tone_map(Vec3 linear, ToneCurve curve);
+
+/// How radiance becomes what a display shows.
+struct DisplayTransform {
+    float exposure = 1; ///< factor on radiance (2^EV)
+    ToneCurve curve = ToneCurve::neutral;
+
+    DisplayTransform() = default;
+    DisplayTransform(float factor, ToneCurve tone = ToneCurve::neutral) : exposure(factor), curve(tone) {} // NOLINT
+    bool operator==(DisplayTransform const&) const = default;
+    /// Linear Rec.709 colour that is shown, [0, 1].
+    Vec3 shown(Vec3 const& radiance) const { return tone_map(radiance * exposure, curve); }
+};
+
 /// sRGB transfer function ([IEC 61966-2-1]) on [0, 1], and its inverse.
 float srgb_from_linear(float linear);
 float linear_from_srgb(float encoded);
@@ -57,7 +81,7 @@ TransferTables const& transfer_tables();
 constexpr float display_luma(std::uint8_t red, std::uint8_t green, std::uint8_t blue) {
     return static_cast<float>(red + 2 * green + blue) / (4 * 255.0f);
 }
-/// The same luma of radiance as a viewer sees it, tone-mapped; `exposure` (2^EV) multiplies the radiance.
-float display_luma(Vec3 radiance, float exposure);
+/// The same luma of radiance as a viewer sees it.
+float display_luma(Vec3 radiance, DisplayTransform const& display);
 
 } // namespace framelet

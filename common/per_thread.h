@@ -45,6 +45,16 @@ public:
         }
     }
 
+    /// The same, and it may change them.
+    template <typename Change>
+    void change_each(Change const& change) {
+        for (std::unique_ptr<Value> const& value : values_) {
+            if (value != nullptr) {
+                change(*value);
+            }
+        }
+    }
+
 private:
     std::vector<std::unique_ptr<Value>> values_;
 };

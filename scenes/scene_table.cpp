@@ -1,6 +1,7 @@
 #include "scenes/scene_table.h"
 
 #include "scenes/failure_scenes.h"
+#include "scenes/lit_scenes.h"
 #include "scenes/vehicle_scenes.h"
 
 namespace framelet {
@@ -83,6 +84,8 @@ std::span<SceneEntry const> scene_table() {
         {"flag", 4, true, [] { return make_flag_scene({.duration = 4}); }},
         {"fan", 4, true, [] { return make_fan_scene({.duration = 4}); }},
         {"glass", 4, true, [] { return make_glass_scene({.duration = 4}); }},
+        {"interior", 8, true, [] { return make_interior_scene({.duration = 8}); }},
+        {"dusk", 6, true, [] { return make_dusk_scene({.duration = 6}); }},
     };
     return table;
 }

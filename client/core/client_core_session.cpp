@@ -180,7 +180,7 @@ void ClientCore::receive_batch(EncodedBatch const& encoded) {
     ack.received_us = static_cast<std::uint64_t>(
         std::chrono::duration_cast<std::chrono::microseconds>(received.time_since_epoch()).count());
     ack.decode_us = static_cast<std::uint32_t>(std::min(seconds_between(received, decoded) * 1e6, 4e9));
-    connection_->send(ack);
+    connection_->acknowledge(ack);
     bool is_full = false;
     {
         std::lock_guard const lock(mutex_);

@@ -337,6 +337,10 @@ Viewport GpuCanvas::size() const {
     return impl_->viewport;
 }
 
+void GpuCanvas::show() const {
+    show_on_screen(impl_->planes->filtered);
+}
+
 void GpuCanvas::read(Picture& picture) const {
     Viewport const size = impl_->viewport;
     if (picture.width != size.width || picture.height != size.height) {

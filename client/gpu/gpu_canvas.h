@@ -26,6 +26,8 @@ public:
     /// another size, until one of that size has been asked for and they get yet another.
     std::uint32_t texture();
     Viewport size() const;
+    /// Copies the picture to the framebuffer of the context, which has its size, as a web page shows it.
+    void show() const;
     /// Copies the picture to memory; waits for the card. `picture` gets its size.
     void read(Picture& picture) const;
     /// Inverse depths of what was painted last, 1 / metres, `hole_depth` in holes; for tests.

@@ -21,7 +21,8 @@ ProgramNotes notes() {
         "of both programs can be set in files: see --server-config and --viewer-config.\n\n"
         "The window shows how far the scene is loaded. The server listens on a free port of this machine and lets in "
         "viewers of the same user alone. framelet becomes framelet-viewer; the programs are looked for where framelet "
-        "is, then in PATH. They end with the window, and with SIGINT (Ctrl-C), SIGTERM or SIGHUP.",
+        "is, then in PATH. With --web it becomes framelet-server instead. They end with the window, and with SIGINT "
+        "(Ctrl-C), SIGTERM or SIGHUP.",
         {{0, "fine: the window was closed, or a signal ended it"},
          {1, "no display, a program is missing, the scene or another file cannot be used, or the server was gone when "
              "the window was closed"},
@@ -85,6 +86,12 @@ std::variant<ProgramCall, int> parse_options(int argc, char const* const* argv) 
         ->type_name("auto|cpu|gpu")
         ->check(readable_by(parse_painter));
     option("--viewer-config", "Take further options of framelet-viewer from this file")->type_name("FILE");
+    view->option_defaults()->group("Browser");
+    flag("--web", "Open the page that the server has for browsers instead of a window, until Ctrl-C");
+    CLI::Option* const web = view->get_option("--web");
+    for (CLI::Option const* const of_window : options_of_group(*view, window_group)) {
+        web->excludes(view->get_option(of_window->get_name()));
+    }
     try {
         parse_command_line(app, static_cast<int>(separator - argv), argv);
     } catch (CLI::ParseError const& error) {
@@ -95,6 +102,14 @@ std::variant<ProgramCall, int> parse_options(int argc, char const* const* argv) 
         return ProgramCall{"framelet-server", {"--list-as=framelet view", "--", scenes.front()}};
     }
     std::vector<std::string> out;
+    if (web->count() > 0) {
+        out = {"--browser", "--port=0"};
+        pass_on(*view, scene_group, "", out);
+        out.insert(out.end(), separator == end ? end : separator + 1, end);
+        out.emplace_back("--");
+        out.insert(out.end(), scenes.begin(), scenes.end());
+        return ProgramCall{"framelet-server", out};
+    }
     pass_on(*view, window_group, "", out);
     std::ranges::transform(scenes, std::back_inserter(out), [](std::string const& scene) { return "--open=" + scene; });
     out.emplace_back("--needs-scene");

@@ -11,9 +11,10 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-/// The picture that the view comes to with the clock standing at that moment. Throws ConnectionError.
-Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport, bool sets_clock) {
-    constexpr std::chrono::seconds patience(60);
+/// The picture that the view comes to with the clock standing at that moment, or what it is when patience ends; sets
+/// whether it is complete. Throws ConnectionError.
+Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport, bool sets_clock,
+                 std::chrono::seconds patience, bool& complete) {
     // The pictures meanwhile need not be painted: the server may want this machine's processors for what it renders.
     constexpr std::chrono::milliseconds look(200);
     if (sets_clock) {
@@ -21,21 +22,25 @@ Picture still_of(ClientCore& core, ShownMoment const& moment, Viewport viewport,
     }
     Picture out; // of no size, so that all of it is written
     std::vector<PixelRect> changed;
-    for (Clock::time_point const end = Clock::now() + patience; Clock::now() < end;) {
+    bool stands = complete = false;
+    for (Clock::time_point const end = Clock::now() + patience; !complete && Clock::now() < end;) {
         core.set_view(moment.camera, viewport, moment.scene_camera);
         core.update_picture(out, changed, Clock::now());
         if (auto const reason = core.end_reason()) {
             throw ConnectionError(*reason);
         }
         // The server's Status of the moment before may still be on its way.
-        bool const stands = !sets_clock || core.status().clock.time == moment.time;
-        if (stands && core.is_complete()) {
-            core.update_picture(out, changed, Clock::now()); // what came since
-            return out;
+        stands = !sets_clock || core.status().clock.time == moment.time;
+        complete = stands && core.is_complete();
+        if (!complete) {
+            std::this_thread::sleep_for(look);
         }
-        std::this_thread::sleep_for(look);
     }
-    throw ConnectionError("the stills of the contact sheet were not complete in time: make the picture smaller");
+    if (!stands) {
+        throw ConnectionError("the stills of the contact sheet have not come in time");
+    }
+    core.update_picture(out, changed, Clock::now()); // what came since
+    return out;
 }
 
 } // namespace
@@ -61,7 +66,9 @@ void SheetMoments::take_stills(ClientCore& core) {
     core.set_smoothing(0); // the moment itself is wanted
     for (std::size_t i = 0; i < pairs_.size(); ++i) {
         Picture const& shown = pairs_[i].shown;
-        pairs_[i].still = still_of(core, moments_[i], {shown.width, shown.height}, moves);
+        bool complete = false;
+        pairs_[i].still = still_of(core, moments_[i], {shown.width, shown.height}, moves, patience_, complete);
+        unfinished_ += complete ? 0 : 1;
     }
     if (moves) {
         core.request_clock({ClockRequest::time | ClockRequest::playing, before});

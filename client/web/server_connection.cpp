@@ -32,6 +32,8 @@ void ServerConnection::send(Message const& message) {
     }
 }
 
+void ServerConnection::acknowledge(Ack const&) {} // see BatchAnswers
+
 bool ServerConnection::all_sent() const {
     return impl_->page.all_sent;
 }

@@ -4,10 +4,10 @@
 #include <chrono>
 
 #include "client/processes/end_signals.h"
+#include "client/viewer/commands.h"
 #include "client/window/attempts.h"
 #include "client/window/dropped_files.h"
 #include "client/window/escape_key.h"
-#include "client/window/overlay/commands.h"
 #include "client/window/overlay/overlay.h"
 #include "common/error.h"
 #include "common/program_line.h"

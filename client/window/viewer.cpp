@@ -5,9 +5,9 @@
 
 #include "client/core/picture/display_timing.h"
 #include "client/processes/end_signals.h"
+#include "client/viewer/commands.h"
+#include "client/viewer/lacks.h"
 #include "client/window/kept/scene_memory.h"
-#include "client/window/overlay/commands.h"
-#include "client/window/overlay/lacks.h"
 #include "common/error.h"
 #include "common/program_line.h"
 

@@ -2,11 +2,15 @@
 #include <algorithm>
 #include <filesystem>
 #include <iterator>
+#include <utility>
 
+#include "client/core/camera/axis_views.h"
+#include "client/core/camera/camera_text.h"
+#include "client/core/present_moment.h"
+#include "client/viewer/commands.h"
+#include "client/viewer/lacks.h"
 #include "client/window/dropped_files.h"
 #include "client/window/kept/user_files.h"
-#include "client/window/overlay/commands.h"
-#include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"
 #include "common/error.h"
@@ -37,31 +41,18 @@ void Viewer::leave_scene_camera() {
 }
 
 void Viewer::take_view(Command command) {
-    struct AxisView {
-        Command command;
-        Vec3 forward, up;
-        char const* name;
-    };
-    // glTF's scenes look towards +Z, and up is +Y.
-    static constexpr AxisView views[] = {
-        {Command::view_front, {0, 0, -1}, {0, 1, 0}, "from the front"},
-        {Command::view_back, {0, 0, 1}, {0, 1, 0}, "from behind"},
-        {Command::view_right, {-1, 0, 0}, {0, 1, 0}, "from the right"},
-        {Command::view_left, {1, 0, 0}, {0, 1, 0}, "from the left"},
-        {Command::view_top, {0, -1, 0}, {0, 0, -1}, "from above"},
-        {Command::view_below, {0, 1, 0}, {0, 0, 1}, "from below"},
-    };
     leave_scene_camera();
     is_at_bookmark_ = false;
-    auto const* const view = std::ranges::find(views, command, &AxisView::command);
-    if (view == std::end(views)) {
+    auto const view = static_cast<std::size_t>(command) - static_cast<std::size_t>(Command::view_front);
+    if (command == Command::toggle_projection) {
         controller_->toggle_projection();
         say(controller_->camera().projection == Projection::orthographic ? "orthographic" : "perspective");
         return;
     }
-    controller_->look_along(view->forward, view->up);
+    AxisView const& along = axis_views[view];
+    controller_->look_along(along.forward, along.up);
     controller_->fit(window_.framebuffer_size(), overlay_.covered_below());
-    say(view->name);
+    say(along.name);
 }
 
 Camera Viewer::present_camera() const {
@@ -88,16 +79,13 @@ void Viewer::add_bookmark() {
         }
         bookmark_ = static_cast<int>(before);
         is_at_bookmark_ = scene_camera_ < 0;
-        say("bookmark " + bookmarks_->all().back().name + " added" +
-            (bookmark_ < numbered_cameras
-                 ? ": " + key_names(numbered(Command::bookmark, bookmark_)) + " comes back here"
-                 : ""));
+        say(bookmark_added_text(bookmarks_->all()));
     });
 }
 
 void Viewer::remove_bookmark(int number) {
-    if (number < 0 || number >= static_cast<int>(bookmarks_->all().size())) {
-        say("no bookmark has been gone to: " + key_names(Command::bookmark) + " goes to the first");
+    if (std::string lacks = removal_lacks(bookmarks_->all().size(), number); !lacks.empty()) {
+        say(std::move(lacks));
         return;
     }
     bookmark_ = -1;
@@ -105,15 +93,14 @@ void Viewer::remove_bookmark(int number) {
     std::string const name = bookmarks_->all()[static_cast<std::size_t>(number)].name;
     change_bookmarks([&] {
         bookmarks_->remove(static_cast<std::size_t>(number));
-        say("bookmark " + name + " removed");
+        say(bookmark_removed_text(name));
     });
 }
 
 void Viewer::go_to_bookmark(int number) {
     std::vector<Bookmark> const& all = bookmarks_->all();
-    if (number >= static_cast<int>(all.size())) {
-        say(all.empty() ? with_keys("there are no bookmarks yet: add one", Command::add_bookmark)
-                        : "there are only " + counted(all.size(), "bookmark"));
+    if (std::string lacks = bookmark_lacks(all.size(), number); !lacks.empty()) {
+        say(std::move(lacks));
         return;
     }
     scene_camera_ = -1;
@@ -124,13 +111,7 @@ void Viewer::go_to_bookmark(int number) {
 }
 
 void Viewer::copy_camera(bool saves) {
-    CameraMoment moment;
-    if (core_->welcome().animation_duration > 0) {
-        ClockState const clock = core_->clock();
-        moment.scene_time = std::max(clock.time - core_->statistics().lag_seconds, 0.0);
-        moment.paused = !clock.playing;
-    }
-    moment.exposure_ev = settings_.exposure_ev;
+    CameraMoment const moment = present_moment(*core_, settings_.exposure_ev);
     std::string const text = camera_file_text(present_camera(), moment, scene_origin_);
     if (!saves) {
         window_.set_clipboard(text);

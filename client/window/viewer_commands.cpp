@@ -5,10 +5,10 @@
 #include <sstream>
 #include <utility>
 
+#include "client/viewer/lacks.h"
 #include "client/window/kept/film_file.h"
 #include "client/window/kept/scene_memory.h"
 #include "client/window/kept/user_files.h"
-#include "client/window/overlay/lacks.h"
 #include "client/window/viewer.h"
 #include "common/counted.h"
 #include "common/error.h"

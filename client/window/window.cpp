@@ -10,8 +10,8 @@
 #include <GLFW/glfw3.h>
 #include <glm/geometric.hpp>
 
+#include "client/viewer/commands.h"
 #include "client/window/gamepad.h"
-#include "client/window/overlay/commands.h"
 #include "client/window/picture_texture.h"
 #include "client/window/screen_choice.h"
 #include "common/error.h"

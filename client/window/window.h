@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "client/core/camera/camera_controller.h"
-#include "client/window/overlay/commands.h"
+#include "client/viewer/commands.h"
 #include "common/framelet/tile.h"
 #include "common/image.h"
 

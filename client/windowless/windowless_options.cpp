@@ -55,7 +55,9 @@ void add_windowless_options(CLI::App& app, WindowlessOptions& options) {
         ->type_name("SECONDS")
         ->default_str("10, with --until-converged 60")
         ->check(number_in(0.0, 1e6));
-    app.add_option("--camera", options.camera_file, "Camera file: JSON, a still camera or a path")
+    app.add_option(
+           "--camera", options.camera_file,
+           "Camera file: JSON, a still camera or a path; or an address of the web page, of which its camera counts")
         ->type_name("FILE")
         ->default_str("the scene's own view");
     app.add_flag("--until-converged", options.until_converged,

@@ -212,6 +212,11 @@ void write_sheet(SheetMoments& sheet, ClientCore& core, std::string const& file)
         print_line("framelet-client", "there is no contact sheet: the run ended before a quarter of --duration");
         return;
     }
+    if (sheet.unfinished() > 0) {
+        print_line("framelet-client", std::to_string(sheet.unfinished()) + " of the stills were not complete after " +
+                                          std::to_string(sheet.patience().count()) +
+                                          " s: they are as good as they were by then");
+    }
     write_png(file, contact_sheet(sheet.pairs()));
 }
 

@@ -20,6 +20,9 @@ endforeach()
 add_library(TBB::tbb INTERFACE IMPORTED)
 target_include_directories(TBB::tbb SYSTEM INTERFACE ${CMAKE_CURRENT_LIST_DIR}/include)
 
+add_library(PkgConfig::epoxy INTERFACE IMPORTED)
+target_include_directories(PkgConfig::epoxy SYSTEM INTERFACE ${CMAKE_CURRENT_LIST_DIR}/include)
+
 set(zstd_folder ${PROJECT_BINARY_DIR}/zstd)
 execute_process(COMMAND ${CMAKE_CURRENT_LIST_DIR}/zstd_source.sh ${zstd_folder} RESULT_VARIABLE failed)
 if(failed)
@@ -34,7 +37,8 @@ add_library(zstd::libzstd_shared ALIAS zstd)
 
 find_program(FLATC flatc REQUIRED NO_CMAKE_FIND_ROOT_PATH)
 
-add_compile_options(-fexceptions -msimd128)
+# Without SLP: emscripten 3.1.6 makes wrong code of `CameraController::dolly` with it and these vectors.
+add_compile_options(-fexceptions -msimd128 -fno-slp-vectorize)
 add_link_options(-fexceptions)
 add_compile_options("$<$<COMPILE_LANGUAGE:CXX>:SHELL:-include ${CMAKE_CURRENT_LIST_DIR}/include/web_compatibility.h>")
 

@@ -30,6 +30,8 @@ struct Framelet {
     /// How samples on what deforms, and shadows that pass over the static body, go on; 0 for all others. Empty: all are
     /// 0.
     std::vector<Drift> drift;
+    /// Irradiance by the light cache (luminance / pi) where each sample lies. Empty: there is no cache.
+    std::vector<float> light;
     /// Bit i: sample i shows a mirror reflection, which moves otherwise than the surface that it is seen in.
     std::bitset<framelet_samples> reflects;
     bool is_supersampled = false; ///< each sample is the mean of four rays

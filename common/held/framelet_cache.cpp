@@ -36,7 +36,8 @@ void FrameletRoom::give(std::unique_ptr<Chunk> chunk) {
     }
 }
 
-FrameletCache::FrameletCache(ImagePlane plane, FrameletRoom* room) : plane_(plane), room_(room) {
+FrameletCache::FrameletCache(ImagePlane plane, FrameletRoom* room)
+    : plane_(plane), room_(room), finest_(plane.min_depth() - 1) {
     Viewport const viewport = plane.viewport();
     std::size_t nodes = 0;
     std::size_t squares = 0;
@@ -49,15 +50,25 @@ FrameletCache::FrameletCache(ImagePlane plane, FrameletRoom* room) : plane_(plan
         squares += level.square_columns * static_cast<std::size_t>(ceil_div(level.rows, square_side));
         levels_.push_back(level);
     }
-    nodes_.resize(nodes);
-    versions_.resize(squares);
     square_changes_.resize(squares);
+    make_room(plane.pixel_depth());
     Level const& blocks = level(plane.pixel_depth());
     changed_blocks_.resize(static_cast<std::size_t>(blocks.columns) * static_cast<std::size_t>(blocks.rows));
 }
 
+/// Makes room for framelets of this depth.
+void FrameletCache::make_room(int depth) {
+    if (depth > finest_) {
+        finest_ = depth;
+        bool const is_last = depth == plane_.max_depth();
+        Level const& last = level(depth);
+        nodes_.resize(last.first + static_cast<std::size_t>(last.columns) * static_cast<std::size_t>(last.rows));
+        versions_.resize(is_last ? square_changes_.size() : level(depth + 1).first_square);
+    }
+}
+
 std::uint64_t FrameletCache::covered_below(int depth, int column, int row) const {
-    if (depth == plane_.max_depth()) {
+    if (depth >= finest_) {
         return 0;
     }
     std::uint64_t lowest = std::numeric_limits<std::uint64_t>::max();
@@ -159,6 +170,7 @@ CachedFramelet* FrameletCache::make_slot(Tile tile, Moment const& moment, std::u
     int const depth = tile.depth();
     int const column = static_cast<int>(tile.column());
     int const row = static_cast<int>(tile.row());
+    make_room(depth);
     if (is_hidden(depth, column, row, moment.batch)) {
         return nullptr;
     }
@@ -203,7 +215,7 @@ bool FrameletCache::is_hidden(int depth, int column, int row, std::uint64_t batc
 }
 
 void FrameletCache::drop_older_below(int depth, int column, int row, std::uint64_t batch) {
-    if (depth == plane_.max_depth()) {
+    if (depth == finest_) {
         return;
     }
     for_each_child(depth, column, row, [&](int x, int y) {
@@ -269,7 +281,7 @@ void FrameletCache::refresh(int depth, int column, int row) {
     }
     own.cover = std::max(below, own.slot == no_slot ? 0 : held(own.slot).moment.batch);
     own.held = own.slot == no_slot ? 0 : 1;
-    if (depth < plane_.max_depth()) {
+    if (depth < finest_) {
         for_each_child(depth, column, row, [&](int x, int y) { own.held += node(depth + 1, x, y).held; });
     }
 }
@@ -427,6 +439,9 @@ double FrameletCache::coverage() const {
 }
 
 bool FrameletCache::is_covered_from(int depth) const {
+    if (depth > finest_) {
+        return false;
+    }
     Level const& l = level(depth);
     auto const first = nodes_.begin() + static_cast<std::ptrdiff_t>(l.first);
     return std::all_of(first, first + static_cast<std::ptrdiff_t>(l.columns) * l.rows,
@@ -435,7 +450,7 @@ bool FrameletCache::is_covered_from(int depth) const {
 
 std::size_t FrameletCache::memory_bytes() const {
     return chunks_.size() * sizeof(Chunk) + nodes_.capacity() * sizeof(Node) + slot_tiles_.capacity() * sizeof(Tile) +
-           versions_.capacity() * (sizeof(SquareVersions) + sizeof(std::uint64_t)) +
+           versions_.capacity() * sizeof(SquareVersions) + square_changes_.capacity() * sizeof(std::uint64_t) +
            free_slots_.capacity() * sizeof(std::int32_t) + views_.capacity() * sizeof(HeldView) +
            changed_blocks_.capacity() + shape_bytes_;
 }

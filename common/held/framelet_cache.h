@@ -131,11 +131,14 @@ public:
 
     // Read access to the quadtree, as for `reconstruct`.
 
+    /// The deepest of the depths at which anything has been held, at least that of pixels: below it there is nothing.
+    int finest_depth() const { return finest_; }
+
     /// The framelet held for exactly this tile, or null. Any column and row may be asked for; the depth must be within
     /// the plane's limits.
     CachedFramelet const* find(int depth, int column, int row) const {
         Level const& l = level(depth);
-        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows) {
+        if (column < 0 || row < 0 || column >= l.columns || row >= l.rows || depth > finest_) {
             return nullptr;
         }
         std::int32_t const slot = node(depth, column, row).slot;
@@ -147,7 +150,8 @@ public:
     CachedFramelet const* at_slot(std::size_t slot) const {
         return slot_tiles_[slot] == no_tile ? nullptr : &held(static_cast<std::int32_t>(slot));
     }
-    /// The versions of the tiles of a depth in a visible square, whose column and row are counted in squares.
+    /// The versions of the tiles of a depth, `finest_depth` at most, in a visible square, whose column and row are
+    /// counted in squares.
     SquareVersions const& versions(int depth, std::uint32_t square_column, std::uint32_t square_row) const {
         return versions_[square_index(depth, square_column, square_row)];
     }
@@ -211,6 +215,7 @@ private:
     bool insert_one(DisplayFramelet const& framelet, FrameletShape const* shape, Moment const& moment,
                     std::uint32_t view);
     bool take_one(CachedFramelet const& framelet, std::uint32_t view);
+    void make_room(int depth);
     CachedFramelet* make_slot(Tile tile, Moment const& moment, std::uint32_t view);
     void note_placed(CachedFramelet const& cached);
     std::uint32_t view_of(std::uint64_t number, Camera const& camera, SceneTime scene_time);
@@ -230,6 +235,7 @@ private:
     ImagePlane plane_;
     FrameletRoom* room_;
     std::vector<Level> levels_;
+    int finest_; ///< deepest level that has nodes and versions: those of framelets finer than pixels are most of all
     std::vector<Node> nodes_;
     std::vector<std::unique_ptr<Chunk>> chunks_;
     std::vector<Tile> slot_tiles_; ///< by slot; `no_tile` where it is free

@@ -20,7 +20,7 @@ void add_tile(FrameletCache const& cache, int depth, int column, int row, Cached
     CachedFramelet const* const own = cache.find(depth, column, row);
     CachedFramelet const* const newest =
         own != nullptr && (above == nullptr || own->moment.batch >= above->moment.batch) ? own : above;
-    if (depth < cache.plane().max_depth()) {
+    if (depth < cache.finest_depth()) {
         for (int i = 0; i < 4; ++i) {
             add_tile(cache, depth + 1, 2 * column + i % 2, 2 * row + i / 2, newest, area / 4, sum);
         }

@@ -64,7 +64,7 @@ bool find_sample(TransferTables const& tables, FrameletCache const& cache, Momen
     if (x < 0 || y < 0) {
         return false;
     }
-    int const deepest = std::min(depth + deepest_apron_levels, cache.plane().max_depth());
+    int const deepest = std::min(depth + deepest_apron_levels, cache.finest_depth());
     for (int d = depth; d <= deepest; ++d) {
         int const n = 1 << (d - depth);
         CachedFramelet const* const found = cache.find(d, x * n / side, y * n / side);

@@ -65,7 +65,7 @@ bool is_block_in_place(FrameletCache const& cache, Camera const& camera, SceneTi
             return false;
         }
     }
-    for (int d = depth + 1; d <= plane.max_depth(); ++d) {
+    for (int d = depth + 1; d <= cache.finest_depth(); ++d) {
         int const n = 1 << (d - depth);
         for (int i = 0; i < n * n; ++i) {
             if (!is_fine(cache.find(d, n * column + i % n, n * row + i / n))) {

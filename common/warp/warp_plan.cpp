@@ -168,18 +168,19 @@ void WarpPlan::give_back_room() {
     }
 }
 
+/// Has a square for each in which something may be held. Those that there are keep their plans.
 void WarpPlan::set_squares(FrameletCache const& cache) {
     ImagePlane const& plane = cache.plane();
-    if (!squares_.empty() && plane == plane_) {
-        return;
+    if (squares_.empty() || plane != plane_) {
+        plane_ = plane;
+        columns_ = (plane.viewport().width + block_side - 1) / block_side;
+        rows_ = (plane.viewport().height + block_side - 1) / block_side;
+        squares_.clear();
+        known_.clear();
+        first_entry_.clear();
     }
-    plane_ = plane;
-    columns_ = (plane.viewport().width + block_side - 1) / block_side;
-    rows_ = (plane.viewport().height + block_side - 1) / block_side;
-    squares_.clear();
-    known_.clear();
-    first_entry_.clear();
-    for (int depth = plane.min_depth(); depth <= plane.max_depth(); ++depth) {
+    for (int depth = squares_.empty() ? plane.min_depth() : squares_.back().depth + 1; depth <= cache.finest_depth();
+         ++depth) {
         int const square_depth = std::max(depth - MergedSquare::most_levels, 0);
         for (std::uint32_t index = 0; index < 1u << 2 * square_depth; ++index) {
             Tile const tile{(1u << 2 * square_depth) + index};

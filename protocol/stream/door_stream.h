@@ -39,6 +39,11 @@ public:
     executor_type get_executor() { return state_->next.get_executor(); }
     auto& lowest_layer() { return state_->next.lowest_layer(); }
     auto native_handle() { return state_->next.native_handle(); }
+    bool speaks_http() const { return state_->speaks == Speaks::http; }
+    /// True where a page has ended because it was left, closed or loaded again: browsers say so ([RFC 6455] 7.4.1).
+    bool was_left() const {
+        return state_->socket && state_->socket->reason().code == boost::beast::websocket::close_code::going_away;
+    }
 
     template <typename Role, typename Handler>
     void async_handshake(Role role, Handler&& handler) {

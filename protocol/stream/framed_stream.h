@@ -54,6 +54,8 @@ public:
     /// True where the connection is gone without a word of either side, who might meet again. Means something once
     /// `on_close` was called.
     virtual bool was_cut() const { return false; }
+    /// True where the other side speaks HTTP and opens no session. To be called on the io_context's thread.
+    virtual bool asks_for_files() const { return false; }
     /// Address and port of the other side, as they were at the beginning. May be called from any thread.
     virtual std::string peer() const = 0;
 };

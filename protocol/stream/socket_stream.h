@@ -42,6 +42,10 @@ template <typename Next>
 inline constexpr bool is_secure<asio::ssl::stream<Next>> = true;
 template <typename Next>
 inline constexpr bool is_secure<DoorStream<Next>> = is_secure<Next>;
+template <typename Stream>
+inline constexpr bool has_door = false;
+template <typename Next>
+inline constexpr bool has_door<DoorStream<Next>> = true;
 
 /// A connection over `Stream`: asio's TCP socket, or its TLS stream over one, or a DoorStream over either.
 template <typename Stream>
@@ -123,7 +127,19 @@ public:
                ((awaited_reads_ == 0 && !peer_done_) || (awaited_writes_ == 0 && writing_));
     }
 
-    bool was_cut() const override { return cut_; }
+    bool was_cut() const override {
+        if constexpr (has_door<Stream>) {
+            return cut_ && !stream_.was_left();
+        }
+        return cut_;
+    }
+
+    bool asks_for_files() const override {
+        if constexpr (has_door<Stream>) {
+            return stream_.speaks_http();
+        }
+        return false;
+    }
 
     std::string peer() const override { return peer_; }
 

@@ -170,6 +170,13 @@ WebPage read_web_page(std::filesystem::path const& folder) {
 }
 
 std::optional<WebResponse> web_answer(WebRequest const& request, WebPage const& page, bool on_loopback) {
+    std::string_view const target = view_of(request.target());
+    std::string_view name = target.substr(0, target.find('?'));
+    name.remove_prefix(name.starts_with('/') ? 1 : 0);
+    bool const is_session = name == "session";
+    if (is_session && !is_welcome_origin(request, page)) { // whatever the method: an upgrade's answer no page can read
+        return text_answer(http::status::forbidden, "pages of that origin may not connect: see --web-origin\n");
+    }
     if (request.method() != http::verb::get && request.method() != http::verb::head) {
         WebResponse answer = text_answer(http::status::method_not_allowed, "only GET and HEAD\n");
         answer.set(http::field::allow, "GET, HEAD");
@@ -179,14 +186,8 @@ std::optional<WebResponse> web_answer(WebRequest const& request, WebPage const& 
         return text_answer(http::status::forbidden, "this server is not known by that name: use localhost, or "
                                                     "--web-origin\n");
     }
-    std::string_view const target = view_of(request.target());
-    std::string_view name = target.substr(0, target.find('?'));
-    name.remove_prefix(name.starts_with('/') ? 1 : 0);
     if (beast::websocket::is_upgrade(request)) {
-        if (!is_welcome_origin(request, page)) {
-            return text_answer(http::status::forbidden, "pages of that origin may not connect: see --web-origin\n");
-        }
-        return name == "session" ? std::nullopt : std::optional(text_answer(http::status::not_found, "no such\n"));
+        return is_session ? std::nullopt : std::optional(text_answer(http::status::not_found, "no such\n"));
     }
     std::string_view const wanted = name.empty() ? "index.html" : name;
     auto const file =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "scenes/gltf/animations.h"
 #include "scenes/mesh/mesh_builder.h"
 #include "scenes/mesh/textures.h"
 #include "scenes/things/props.h"
@@ -231,6 +232,14 @@ int add_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_de
                               .place = {.translation = eye, .rotation = looking_at(eye, target)},
                               .camera = static_cast<int>(document.cameras.size()) - 1},
                              parent);
+}
+
+void add_drifting_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_degrees, double drift,
+                         double duration) {
+    int const camera = add_camera(document, eye, target, vertical_fov_degrees);
+    D3 const aside = looking_at(eye, target) * D3(1, 0, 0);
+    document.tracks.push_back(translation_track(
+        camera, duration, 48, [&](double time) { return eye + drift * std::sin(2 * pi * time / duration) * aside; }));
 }
 
 } // namespace framelet

@@ -25,5 +25,8 @@ int add_surroundings(GltfDocument& document);
 void add_sun(GltfDocument& document, D3 towards_sun);
 /// Adds a camera that looks from `eye` to `target`, both in the space of `parent`, metres. Returns its node.
 int add_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_degrees, int parent = no_index);
+/// Adds one that goes `drift` metres to either side of `eye` and back within `duration` seconds.
+void add_drifting_camera(GltfDocument& document, D3 eye, D3 target, double vertical_fov_degrees, double drift,
+                         double duration);
 
 } // namespace framelet

@@ -29,6 +29,7 @@
 #include "server/program/options.h"
 #include "server/program/progress_bar.h"
 #include "server/program/shell_word.h"
+#include "server/program/web_address.h"
 #include "server/scene/scene_list.h"
 #include "server/scene/summary/scene_summary.h"
 #include "server/scene/summary/visibility.h"
@@ -41,6 +42,21 @@
 
 namespace framelet {
 namespace {
+
+/// The folder of the page: the one that is named, else the one that is installed with this program. Empty: there is
+/// none, or nobody wants it, as whoever starts this program for a window.
+std::filesystem::path page_folder(Options const& options) {
+    if (options.no_web || (options.news && options.web_files.empty())) {
+        return {};
+    }
+    if (!options.web_files.empty()) {
+        return options.web_files;
+    }
+    std::error_code error;
+    std::filesystem::path const program = std::filesystem::read_symlink("/proc/self/exe", error);
+    std::filesystem::path const folder = program.parent_path().parent_path() / "share/framelet/web";
+    return std::filesystem::exists(folder / "index.html", error) ? folder : std::filesystem::path();
+}
 
 /// Reads the tokens, and tries the certificate. Throws InputError where a file is of no use; to find
 /// that out only when it is needed could take as long as the scene does.
@@ -59,11 +75,31 @@ void read_files(Options& options) {
                          server.tls_key);
         }
     }
-    if (!options.web_files.empty()) {
-        WebPage page = read_web_page(options.web_files);
+    if (std::filesystem::path const folder = page_folder(options); !folder.empty()) {
+        WebPage page = read_web_page(folder);
         page.origin = options.web_origin;
         server.web = std::make_shared<WebPage>(std::move(page));
+    } else if (options.browser || !options.web_origin.empty()) {
+        throw InputError("there is no page for browsers beside this program: say where it is with --web-files");
     }
+}
+
+/// Says where the page is: with the token where a person reads it, since others keep what they read. Returns what a
+/// browser was opened with, if one was wanted.
+std::unique_ptr<WebAddressFile> tell_page(Options const& options, std::string const& endpoint) {
+    ServerOptions const& server = options.server;
+    bool const is_encrypted = !server.tls_certificate.empty();
+    bool const is_read_by_person = ::isatty(STDOUT_FILENO) != 0;
+    std::cout << "in a browser " << web_address(endpoint, is_encrypted, is_read_by_person ? server.token : "")
+              << std::endl;
+    if (!options.browser) {
+        return nullptr;
+    }
+    auto file = std::make_unique<WebAddressFile>(web_address(endpoint, is_encrypted, server.token));
+    if (!open_in_browser(file->path())) {
+        spdlog::warn("--browser: there is no desktop here whose browser could be opened");
+    }
+    return file;
 }
 
 std::vector<Index> chosen_clips(Scene const& scene, ImportOptions const& import) {
@@ -214,6 +250,7 @@ void serve(Options& options) {
                           loaded->clips,
                           options.light,
                           loaded->exposure,
+                          stream.tone_curve,
                           stream.bias,
                           stream.batch_framelets});
     }
@@ -246,6 +283,8 @@ void serve(Options& options) {
     if (!options.server.tls_certificate.empty()) {
         std::cout << "certificate SHA-256 " << certificate_fingerprint(options.server.tls_certificate) << std::endl;
     }
+    std::unique_ptr<WebAddressFile> const page_file =
+        options.server.web ? tell_page(options, server.addresses().front()) : nullptr;
     if (answering) {
         answering->start([&server] { return server.figures(); });
         std::cout << "metrics at http://" << answering->address() << "/metrics" << std::endl;

@@ -42,6 +42,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
     bool insecure = false;
     std::string light = "direct";
+    std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
     CLI::App app("Renders a scene for remote viewers: every ray where their pictures gain most.", "framelet-server");
@@ -71,14 +72,15 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->capture_default_str();
     app.add_option("--environment", options.environment, "Environment map (.hdr, .exr) that lights the scene")
         ->type_name("FILE");
-    app.add_option("--light", light,
-                   "Light: that of lights and environment alone (direct), or all of it by paths (reference), exact and "
-                   "slow: noisy while anything moves, and for a while after")
-        ->type_name("direct|reference")
+    app.add_option(
+           "--light", light,
+           "Light: that of lights and environment alone (direct); all of it, smooth in motion and exact in the end "
+           "(full); or all of it by paths alone (reference): noisy while anything moves, and for a while after")
+        ->type_name("direct|full|reference")
         ->check(readable_by(parse_light_method))
         ->capture_default_str();
     app.add_option("--sun-size", options.light.sun_degrees,
-                   "Diameter of suns, for soft shadows with --light reference; 0: hard")
+                   "Diameter of suns, for soft shadows with --light full and reference; 0: hard")
         ->type_name("DEGREES")
         ->check(number_in(0.0, 90.0))
         ->capture_default_str();
@@ -90,6 +92,13 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->type_name("STOPS")
         ->default_str("chosen for the scene")
         ->check(number_in(-32.0, 32.0));
+    app.add_option(
+           "--tone-map", tone_curve,
+           "How light becomes colour: base colours as they are (neutral), as film shows them (aces, agx), or cut "
+           "off where the display ends (linear)")
+        ->type_name("neutral|aces|agx|linear")
+        ->check(readable_by(parse_tone_curve))
+        ->capture_default_str();
     app.add_option("--clip", options.import.clips, "Animation clip to play, by name; may be given several times")
         ->type_name("NAME")
         ->allow_extra_args(false) // what follows its name is a scene
@@ -128,15 +137,18 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
 
     app.option_defaults()->group("Browsers");
-    CLI::Option* const web_files =
-        app.add_option("--web-files", options.web_files,
-                       "Folder of a page for browsers, which the same port then answers, and WebSockets with it")
-            ->type_name("FOLDER");
+    app.add_option("--web-files", options.web_files,
+                   "Folder of the page for browsers, which the same port answers, and WebSockets with it")
+        ->type_name("FOLDER")
+        ->default_str("the page that is installed with this program, if it is");
+    CLI::Option* const no_web = app.add_flag("--no-web", options.no_web, "Answer no browsers");
+    app.add_flag("--browser", options.browser, "Open the page with the browser of this desktop, once there is a scene")
+        ->excludes(no_web);
     app.add_option("--web-origin", options.web_origin,
                    "Let pages of this origin connect too, as https://HOST[:PORT]: where a proxy in front of the server "
                    "has another name")
         ->type_name("URL")
-        ->needs(web_files);
+        ->excludes(no_web);
 
     app.option_defaults()->group("Viewers");
     app.add_option("--max-sessions", options.server.max_sessions, "Most viewers at a time")
@@ -214,6 +226,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         parse_command_line(app, argc, argv);
         options.log = parse_log_format(log);
         options.light.method = parse_light_method(light);
+        options.server.loop.stream.tone_curve = parse_tone_curve(tone_curve);
         if (!options.import.scene.empty() && options.scenes.size() > 1) {
             throw InputError("--scene chooses a scene of one file: give that file alone");
         }

@@ -33,8 +33,10 @@ struct Options {
     bool local_token = false; ///< viewers of this user on this machine get one by themselves, others none
     std::optional<std::uint16_t> metrics_port; ///< nothing: none
     std::string metrics_bind = "127.0.0.1";
-    std::filesystem::path web_files; ///< folder of the page for browsers; empty: these are not answered
+    std::filesystem::path web_files; ///< folder of the page for browsers; empty: the one that is installed
+    bool no_web = false; ///< browsers are not answered
     std::string web_origin; ///< of pages elsewhere that may connect; empty: none
+    bool browser = false; ///< open the page with this desktop's browser
     ServerOptions server;
 };
 

@@ -1,11 +1,12 @@
 // Turns a rendered framelet into what the viewer gets. In: radiance. Out: display samples, a byte for each colour.
 #pragma once
 
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 
 namespace framelet {
 
-/// The framelet tone-mapped and sRGB-encoded; `exposure` multiplies radiance first (2^EV).
-DisplayFramelet to_display(Framelet const& framelet, float exposure);
+/// The framelet exposed, tone-mapped and sRGB-encoded.
+DisplayFramelet to_display(Framelet const& framelet, DisplayTransform const& transform);
 
 } // namespace framelet

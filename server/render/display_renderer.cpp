@@ -17,6 +17,7 @@ void move_geometry(Framelet& from, Framelet& to) {
     to.depth = from.depth;
     to.body.swap(from.body);
     to.drift.swap(from.drift);
+    to.light.swap(from.light);
     to.reflects = from.reflects;
     to.is_supersampled = false;
 }
@@ -58,7 +59,7 @@ Majority majority_of(Framelet const& child, std::size_t first) {
 
 } // namespace
 
-void merge_child(Framelet const& child, float exposure, bool will_be_moved, Framelet& geometry,
+void merge_child(Framelet const& child, DisplayTransform const& transform, bool will_be_moved, Framelet& geometry,
                  DisplayFramelet& display) {
     constexpr std::size_t quarter = framelet_samples / four_rays;
     FRAMELET_CHECK(geometry.tile == child.tile.parent() && display.tile == geometry.tile);
@@ -68,6 +69,7 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
     if (!child.drift.empty()) {
         geometry.drift.resize(framelet_samples);
     }
+    geometry.light.resize(child.light.size());
     std::size_t const first = (child.tile.code % four_rays) * quarter;
     for (std::size_t i = 0; i < quarter; ++i) {
         std::size_t const from = i * four_rays;
@@ -78,7 +80,7 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
         int count = 0;
         for (std::size_t ray = from; ray < from + four_rays; ++ray) {
             if (!keeps_bodies_out || child.body[ray] == static_body) {
-                light += tone_map(Vec3(child.red[ray], child.green[ray], child.blue[ray]) * exposure);
+                light += transform.shown(Vec3(child.red[ray], child.green[ray], child.blue[ray]));
                 ++count;
             }
         }
@@ -88,6 +90,9 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
         display.blue[to] = srgb_byte_from_linear(light.b);
         geometry.depth[to] = majority.depth;
         geometry.reflects[to] = child.reflects[majority.ray];
+        if (!child.light.empty()) {
+            geometry.light[to] = child.light[majority.ray];
+        }
         if (!child.body.empty()) {
             geometry.body[to] = child.body[majority.ray];
         }
@@ -98,12 +103,12 @@ void merge_child(Framelet const& child, float exposure, bool will_be_moved, Fram
 }
 
 std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
-                             float exposure, int rays_per_sample, bool will_be_moved, Framelet& scratch,
-                             Framelet& geometry, DisplayFramelet& display) {
+                             DisplayTransform const& transform, int rays_per_sample, bool will_be_moved,
+                             Framelet& scratch, Framelet& geometry, DisplayFramelet& display) {
     FRAMELET_CHECK(rays_per_sample == single_ray || rays_per_sample == four_rays);
     if (rays_per_sample == single_ray) {
         std::uint32_t const segments = render_framelet(scene, rays, plane, tile, scratch);
-        display = to_display(scratch, exposure);
+        display = to_display(scratch, transform);
         move_geometry(scratch, geometry);
         return segments;
     }
@@ -115,7 +120,7 @@ std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, Ima
     std::uint32_t segments = 0;
     for (std::uint32_t quadrant = 0; quadrant < four_rays; ++quadrant) {
         segments += render_framelet(scene, rays, plane, tile.child(quadrant), scratch);
-        merge_child(scratch, exposure, will_be_moved, geometry, display);
+        merge_child(scratch, transform, will_be_moved, geometry, display);
     }
     return segments;
 }

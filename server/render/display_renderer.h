@@ -2,6 +2,7 @@
 // needs. Where one ray a sample is not enough, each sample is the mean of four.
 #pragma once
 
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 #include "server/render/framelet_renderer.h"
 #include "server/render/rays_per_sample.h"
@@ -14,14 +15,14 @@ namespace framelet {
 /// moves the samples; then what never moves gets no light of bodies before it, which would stay there when they have
 /// gone. `geometry` and `display` are of that tile; body and velocity are allocated once a child has some. The samples
 /// are finite for finite radiance.
-void merge_child(Framelet const& child, float exposure, bool will_be_moved, Framelet& geometry,
+void merge_child(Framelet const& child, DisplayTransform const& transform, bool will_be_moved, Framelet& geometry,
                  DisplayFramelet& display);
 
 /// Renders one framelet on the calling thread. `geometry` gets all but the radiance; `scratch` is overwritten, and its
 /// memory is reused. `rays_per_sample`: single_ray, or four_rays, which `merge_child` merges. Returns how many rays
 /// that took, shadow and mirror rays included.
 std::uint32_t render_display(RenderScene const& scene, ViewRays const& rays, ImagePlane const& plane, Tile tile,
-                             float exposure, int rays_per_sample, bool will_be_moved, Framelet& scratch,
-                             Framelet& geometry, DisplayFramelet& display);
+                             DisplayTransform const& transform, int rays_per_sample, bool will_be_moved,
+                             Framelet& scratch, Framelet& geometry, DisplayFramelet& display);
 
 } // namespace framelet

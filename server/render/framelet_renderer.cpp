@@ -22,6 +22,8 @@ Footprint sample_footprint(ViewRays const& view, float spacing) {
     Footprint footprint;
     footprint.width.fill(glm::length(view.origin_dx) * spacing);
     footprint.slope.fill(glm::length(view.direction_dx) * spacing);
+    footprint.pixels.fill(spacing);
+    footprint.is_block = true;
     return footprint;
 }
 
@@ -39,6 +41,7 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
     out.tile = tile;
     out.body.clear();
     out.drift.clear();
+    out.light.resize(scene.prepared().light_cache != nullptr ? framelet_samples : 0);
     out.reflects.reset();
     for (int first = 0; first < framelet_samples; first += lanes) {
         auto const position = [&](int i) {
@@ -55,6 +58,9 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& view, Im
             out.green[sample] = traced.radiance.y[i];
             out.blue[sample] = traced.radiance.z[i];
             out.depth[sample] = traced.depth[i];
+        }
+        if (!out.light.empty()) {
+            std::copy_n(traced.light.lane, lanes, out.light.begin() + first);
         }
         if (traced.reflects != 0) {
             out.reflects |= std::bitset<framelet_samples>(traced.reflects) << static_cast<std::size_t>(first);
@@ -81,8 +87,9 @@ std::uint64_t render_framelets(RenderScene const& scene, Camera const& camera, I
 }
 
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std::span<Vec2 const> positions,
-                             std::span<float const> spacings, std::span<Vec3> radiance) {
+                             std::span<float const> spacings, std::span<Vec3> radiance, std::span<SampleLight> light) {
     FRAMELET_CHECK(positions.size() == radiance.size() && positions.size() == spacings.size());
+    FRAMELET_CHECK(light.empty() || light.size() == positions.size());
     float const width = glm::length(view.origin_dx);
     float const slope = glm::length(view.direction_dx);
     std::atomic<std::uint64_t> segments{0};
@@ -97,12 +104,16 @@ std::uint64_t render_samples(RenderScene const& scene, ViewRays const& view, std
         for (int i = 0; i < lanes; ++i) {
             footprint.width[i] = width * spacings[of_lane(i)];
             footprint.slope[i] = slope * spacings[of_lane(i)];
+            footprint.pixels[i] = spacings[of_lane(i)];
         }
         TracedPacket traced{};
         RayPacket rays = rays_through(view, [&](int i) { return positions[of_lane(i)]; });
         trace(scene.prepared(), rays, all_lanes, footprint, mirror_bounces, traced);
         for (std::size_t i = 0; i < count; ++i) {
             radiance[first + i] = traced.radiance.get(static_cast<int>(i));
+        }
+        for (std::size_t i = 0; i < count && !light.empty(); ++i) {
+            light[first + i] = {traced.light[static_cast<int>(i)], traced.light_share[static_cast<int>(i)]};
         }
         segments.fetch_add(traced.segments, std::memory_order_relaxed);
     });

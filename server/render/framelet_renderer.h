@@ -5,10 +5,14 @@
 #include <cstdint>
 #include <span>
 
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 #include "server/render/prepared/render_scene.h"
+#include "server/render/probe.h"
 
 namespace framelet {
+
+class PathLight;
 
 /// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena. Each
 /// sample is a ray through the middle of its square of the tile. The result depends on scene, view and tile alone, not
@@ -23,18 +27,21 @@ std::uint32_t render_framelet(RenderScene const& scene, ViewRays const& rays, Im
 
 /// Renders scene-linear radiance at any positions of the image plane (pixels), each of a footprint of its own of
 /// `spacings` (pixels), into `radiance` (all of the same length). Positions that follow each other are traced together:
-/// neighbours are cheaper. Parallel on the calling TBB arena; returns how many rays that took.
+/// neighbours are cheaper. `light`: as long, or empty. Parallel on the calling TBB arena; returns how many rays that
+/// took.
 std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std::span<Vec2 const> positions,
-                             std::span<float const> spacings, std::span<Vec3> radiance);
+                             std::span<float const> spacings, std::span<Vec3> radiance,
+                             std::span<SampleLight> light = {});
 
 /// Renders the whole picture by the same renderer without tiling, wire or cache: `samples_per_side`^2 samples a pixel
 /// on the same grid that framelets use, each tone-mapped and quantised as `to_display` does, then averaged in linear
 /// light (box filter). `samples_per_side`: 1, 2, 4 or 8.
-Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
-                       int samples_per_side);
+Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport,
+                       DisplayTransform const& transform, int samples_per_side);
 
 /// The exposure that shows this view well: 1 where the log-average luminance of what is hit is within what a display
-/// shows, else what brings it to a middle grey. It is taken from a small picture and is deterministic.
-float auto_exposure(RenderScene const& scene, Camera const& camera);
+/// shows, else what brings it to a middle grey. It is taken from a small picture and is deterministic. `light`: what
+/// finds the light by paths; null: it is found as framelets are rendered.
+float auto_exposure(RenderScene const& scene, Camera const& camera, PathLight const* light = nullptr);
 
 } // namespace framelet

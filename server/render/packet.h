@@ -94,6 +94,8 @@ struct HitPacket {
 /// Width of the cone that a sample covers, world units: constant + slope * t.
 struct Footprint {
     LaneFloats width, slope;
+    LaneFloats pixels; ///< how many such a width is in the picture; for the light cache
+    bool is_block = false; ///< the lanes are 4x4 neighbours, in Morton order
 };
 
 } // namespace framelet

@@ -1,4 +1,6 @@
 // Renders whole pictures: what a viewer converges to, and a small one by which the exposure is chosen.
+#include "server/render/picture_renderer.h"
+
 #include <bit>
 #include <cmath>
 #include <numeric>
@@ -10,6 +12,7 @@
 #include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
 #include "server/render/light/luminance.h"
+#include "server/render/path/path_light.h"
 
 namespace framelet {
 namespace {
@@ -51,31 +54,64 @@ void add_pixels(DisplayFramelet const& framelet, ImagePlane const& plane, int sa
     }
 }
 
-} // namespace
-
-Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport, float exposure,
-                       int samples_per_side) {
+/// Renders each tile of a grid of `samples_per_side`^2 samples a pixel, in parallel; `add(framelet, plane)` takes it.
+template <class Add>
+void render_tiles(RenderScene const& scene, Camera const& camera, Viewport viewport, int samples_per_side,
+                  Add const& add) {
     FRAMELET_CHECK(samples_per_side >= 1 && samples_per_side <= 8 && std::has_single_bit(unsigned(samples_per_side)));
     ImagePlane const plane(viewport);
     ViewRays const view = make_view_rays(camera, viewport);
     int const finer = std::countr_zero(static_cast<unsigned>(samples_per_side));
     std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth() + finer);
-    Picture picture(viewport.width, viewport.height);
     tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
         Framelet framelet;
         render_framelet(scene, view, plane, tiles[i], framelet);
-        add_pixels(to_display(framelet, exposure), plane, samples_per_side, picture);
+        add(framelet, plane);
+    });
+}
+
+} // namespace
+
+Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport,
+                       DisplayTransform const& transform, int samples_per_side) {
+    Picture picture(viewport.width, viewport.height);
+    render_tiles(scene, camera, viewport, samples_per_side, [&](Framelet const& framelet, ImagePlane const& plane) {
+        add_pixels(to_display(framelet, transform), plane, samples_per_side, picture);
     });
     return picture;
 }
 
-float auto_exposure(RenderScene const& scene, Camera const& camera) {
+FloatImage render_radiance(RenderScene const& scene, Camera const& camera, Viewport viewport, int samples_per_side) {
+    FloatImage picture(viewport.width, viewport.height);
+    render_tiles(scene, camera, viewport, samples_per_side, [&](Framelet const& framelet, ImagePlane const& plane) {
+        PixelRect const rect = plane.tile_rect(framelet.tile);
+        for (std::uint32_t i = 0; i < framelet_samples; ++i) {
+            int const x = rect.left + static_cast<int>(morton_x(i)) / samples_per_side;
+            int const y = rect.top + static_cast<int>(morton_y(i)) / samples_per_side;
+            if (x < viewport.width && y < viewport.height) {
+                picture.at(x, y) += Vec3(framelet.red[i], framelet.green[i], framelet.blue[i]) *
+                                    (1 / static_cast<float>(samples_per_side * samples_per_side));
+            }
+        }
+    });
+    return picture;
+}
+
+float auto_exposure(RenderScene const& scene, Camera const& camera, PathLight const* light) {
     constexpr Viewport probe{64, 48};
     constexpr double darkest = 0.02, brightest = 1, middle = 0.18;
     ImagePlane const plane(probe);
     std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
     std::vector<Framelet> framelets(tiles.size());
     render_framelets(scene, camera, plane, tiles, framelets);
+    if (light != nullptr) {
+        constexpr int paths = 16;
+        ViewRays const view = make_view_rays(camera, probe);
+        tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
+            TileSums sums;
+            trace_more_paths(*light, view, plane, paths, sums, framelets[i]);
+        });
+    }
     std::vector<double> luminances;
     for (Framelet const& framelet : framelets) {
         for (std::size_t i = 0; i < framelet_samples; ++i) {

@@ -76,7 +76,7 @@ bool Admission::resume(Tickets::Holder& holder, std::shared_ptr<Session> const& 
         return false;
     }
     if (auto const more = returns_.next(std::chrono::steady_clock::now())) {
-        spdlog::info("viewer {} is viewer {}, who has come back{}", session->id(), earlier->id(), *more);
+        spdlog::info("viewer {} is viewer {}, who has come back{}", session->number(), earlier->number(), *more);
     }
     memory_.pass(earlier->id(), session->id());
     session->resume(earlier, hello.last_batch);

@@ -229,11 +229,12 @@ struct Server::Impl {
                                " viewers already: try later or raise --max-sessions",
                            true};
         }
-        if (auto const more = come.next(now)) {
-            spdlog::info("viewer {} connects from {}{}", id, connection.session->peer(), *more);
-        }
         connection.admitted = true;
-        ++viewers;
+        connection.session->set_number(++viewers);
+        if (auto const more = come.next(now)) {
+            spdlog::info("viewer {} connects from {}{}", connection.session->number(), connection.session->peer(),
+                         *more);
+        }
         waiting.leave(id);
         Welcome answer = welcome;
         answer.clock = clock.state(now);
@@ -278,7 +279,7 @@ struct Server::Impl {
         if (found == nullptr) {
             return; // two threads ended it at once
         }
-        log_end(id, *found, reason);
+        log_end(*found, reason);
         auto const stream = found->stream;
         bool const was_viewer = found->admitted;
         forget(id);
@@ -312,12 +313,14 @@ struct Server::Impl {
         connections.erase(id);
     }
 
-    void log_end(std::uint64_t id, Connection const& connection, std::string const& reason) {
+    void log_end(Connection const& connection, std::string const& reason) {
         auto const now = steady_clock::now();
         if (connection.admitted) {
             if (auto const more = gone.next(now)) {
-                spdlog::info("viewer {} left: {}{}", id, reason, *more);
+                spdlog::info("viewer {} left: {}{}", connection.session->number(), reason, *more);
             }
+        } else if (connection.stream->asks_for_files()) {
+            return; // a browser may keep such a connection open as long as it is let
         } else if (auto const more = turned_away.next(now)) {
             spdlog::info("a connection from {} ended before it was a viewer's: {}{}", connection.source, reason, *more);
         }
@@ -377,6 +380,16 @@ struct Server::Impl {
         beats = true;
     }
 
+    void tell_failure(std::exception const& error) noexcept {
+        try {
+            if (auto const more = failures.next(steady_clock::now())) {
+                bool const memory = dynamic_cast<std::bad_alloc const*>(&error) != nullptr;
+                spdlog::warn("{}{}", memory ? "no memory left for a moment" : error.what(), *more);
+            }
+        } catch (std::exception const&) { // memory is missing for the words, too
+        }
+    }
+
     /// Runs until everything is closed. What fails here is no session's own. Memory is missing for a moment, and what
     /// has not been done for that is done then.
     void run_io() {
@@ -393,10 +406,7 @@ struct Server::Impl {
                 return;
             } catch (std::exception const& error) {
                 is_to_recover = true;
-                if (auto const more = failures.next(steady_clock::now())) {
-                    bool const memory = dynamic_cast<std::bad_alloc const*>(&error) != nullptr;
-                    spdlog::warn("{}{}", memory ? "no memory left for a moment" : error.what(), *more);
-                }
+                tell_failure(error);
                 std::this_thread::sleep_for(std::chrono::milliseconds(5));
             }
         }

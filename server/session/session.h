@@ -62,6 +62,9 @@ public:
     void abandon();
 
     std::uint64_t id() const { return id_; }
+    /// The viewer's number, for people: until one is set, that of the connection. Set it before the viewer is let in.
+    std::uint64_t number() const { return number_; }
+    void set_number(std::uint64_t number) { number_ = number; }
     std::string peer() const { return stream_->peer(); }
 
     // The following may be called from any thread:
@@ -116,6 +119,7 @@ private:
     void fail(std::string const& reason, bool is_cut);
 
     std::uint64_t const id_;
+    std::uint64_t number_ = id_;
     std::shared_ptr<FramedStream> const stream_;
     Events const events_;
 

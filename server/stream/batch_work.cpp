@@ -6,12 +6,17 @@
 
 #include <tbb/parallel_for.h>
 
+#include "common/laps.h"
 #include "server/render/display_framelet.h"
 #include "server/render/display_renderer.h"
 #include "server/render/visibility.h"
+#include "server/sampling/plan/completion.h"
 
 namespace framelet {
 namespace {
+
+/// Mean squared error (`squared_error`) from which on paths look better than the light cache: a hundredth of white.
+constexpr float smooth_enough = 1e-4f;
 
 /// Replaces `shapes` by those of the framelets for which `send` is not 0, with each sample by itself: on no layer.
 void list_samples(std::span<Framelet const> rendered, std::span<std::uint8_t const> send,
@@ -47,6 +52,7 @@ void BatchWork::render(PosedScene const& scene, PathSums& sums) {
     ViewRays const rays = make_view_rays(view.camera, view.viewport);
     fresh_.prepare();
     std::atomic<std::uint64_t> segments = 0;
+    std::atomic<double> took = 0; // processor seconds
     PathLight const* const light = scene.path_light();
     if (light != nullptr) {
         direct_.resize(std::max(direct_.size(), count));
@@ -55,45 +61,72 @@ void BatchWork::render(PosedScene const& scene, PathSums& sums) {
             sums.hold(plane);
         }
     }
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+    LightGathering* const gathering = scene.light_gathering();
+    std::size_t const packets = gathering != nullptr ? gathering->plan(light_paths(*gathering, count)) : 0;
+    tbb::parallel_for(std::size_t{0}, count + packets, [&](std::size_t i) {
+        if (i >= count) {
+            gathering->follow(i - count);
+            return;
+        }
+        Laps laps;
         segments.fetch_add(light != nullptr
-                               ? render_by_paths(*light, scene.render_scene(), rays, plane, i, sums)
+                               ? render_by_paths(scene, rays, plane, i, sums)
                                : render_display(scene.render_scene(), rays, plane, order.plan.tiles[i],
-                                                order.state.exposure, order.plan.rays_per_sample,
+                                                order.state.transform, order.plan.rays_per_sample,
                                                 order.plan.will_be_moved, fresh_.local(), rendered_[i], display_[i]),
                            std::memory_order_relaxed);
+        took.fetch_add(laps.lap(), std::memory_order_relaxed);
     });
+    if (gathering != nullptr) {
+        // Samples at rest, of many paths each, say nothing of those in motion, by which paths are planned.
+        gathering->finish(order.plan.rays_per_sample == single_ray ? count * framelet_samples : 0, took);
+    }
     if (order.plan.checks && order.plan.checks->visibility) {
         segments +=
             render_visibility(scene.render_scene(), rays, view.viewport, *order.plan.checks->visibility, visibility_);
     }
     figures.segments = segments;
     figures.probe_segments =
-        probes_.render(scene.render_scene(), view.camera, view.viewport, order.state.exposure, order.plan.probes);
+        probes_.render(scene.render_scene(), view.camera, view.viewport, order.state.transform, order.plan.probes);
+}
+
+/// Paths for the light cache, as long as it wants some, beside so many framelets: at rest as many as these have.
+std::size_t BatchWork::light_paths(LightGathering const& gathering, std::size_t framelets) const {
+    std::size_t const samples = framelets * framelet_samples;
+    int const rays = order.plan.rays_per_sample;
+    return rays > single_ray ? samples * static_cast<std::size_t>(new_rays(rays)) : gathering.paths_beside(samples);
 }
 
 /// Renders a framelet with the light of paths, and where its surfaces lie. Returns how many rays and paths that took.
-std::uint32_t BatchWork::render_by_paths(PathLight const& light, RenderScene const& scene, ViewRays const& rays,
-                                         ImagePlane const& plane, std::size_t index, PathSums& sums) {
+std::uint32_t BatchWork::render_by_paths(PosedScene const& scene, ViewRays const& rays, ImagePlane const& plane,
+                                         std::size_t index, PathSums& sums) {
+    PathLight const& light = *scene.path_light();
+    bool const has_cache = scene.light_gathering() != nullptr;
     int const paths = order.plan.rays_per_sample;
-    float const exposure = order.state.exposure;
+    DisplayTransform const& transform = order.state.transform;
     Framelet& fresh = fresh_.local();
     fresh.tile = order.plan.tiles[index];
     std::uint32_t segments = static_cast<std::uint32_t>(framelet_samples * new_rays(paths));
     if (are_shown(paths)) {
-        segments += render_display(scene, rays, plane, fresh.tile, exposure, single_ray, order.plan.will_be_moved,
-                                   fresh, rendered_[index], direct_[index]);
+        int const rays_per_sample = has_cache && paths > single_ray ? four_rays : single_ray;
+        segments += render_display(scene.render_scene(), rays, plane, fresh.tile, transform, rays_per_sample,
+                                   order.plan.will_be_moved, fresh, rendered_[index], direct_[index]);
         rendered_[index].is_supersampled = paths > single_ray;
+        fresh.tile = order.plan.tiles[index];
     }
-    if (paths == single_ray) {
-        trace_first_paths(light, rays, plane, fresh);
-    } else {
+    bool shows_paths = true;
+    if (paths > single_ray) {
         TileSums& tile_sums = sums[fresh.tile];
         trace_more_paths(light, rays, plane, paths, tile_sums, fresh);
-        errors_[index] = squared_error(tile_sums, exposure);
+        errors_[index] = squared_error(tile_sums, transform);
+        shows_paths = !has_cache || errors_[index] <= smooth_enough || paths >= completion_of_paths.most_rays;
+    } else if (has_cache) {
+        shows_paths = false;
+    } else {
+        trace_first_paths(light, rays, plane, fresh);
     }
     if (are_shown(paths)) {
-        display_[index] = to_display(fresh, exposure);
+        display_[index] = shows_paths ? to_display(fresh, transform) : direct_[index];
     }
     return segments;
 }
@@ -105,7 +138,7 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
     if (order.again) {
         needed_.assign(display_.size(), 1);
     } else {
-        needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.luma(), errors_);
+        needed_ = viewer.refresh.learn(order.plan, display_, rendered_, probes_.looks(), errors_);
         figures.learnt_samples = display_.size() * framelet_samples;
     }
     if (!are_shown(order.plan.rays_per_sample)) {

@@ -59,8 +59,9 @@ public:
     Batch const& batch() const { return batch_; }
 
 private:
-    std::uint32_t render_by_paths(PathLight const& light, RenderScene const& scene, ViewRays const& rays,
-                                  ImagePlane const& plane, std::size_t index, PathSums& sums);
+    std::uint32_t render_by_paths(PosedScene const& scene, ViewRays const& rays, ImagePlane const& plane,
+                                  std::size_t index, PathSums& sums);
+    std::size_t light_paths(LightGathering const& gathering, std::size_t framelets) const;
     void describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer);
     void fill_batch(ViewerKnowledge& viewer);
 
@@ -69,7 +70,7 @@ private:
     std::vector<DisplayFramelet> display_pool_;
     std::span<Framelet> rendered_; ///< without radiance, which would crowd the caches for nothing
     std::span<DisplayFramelet> display_;
-    /// What paths show is noise to probes and plan: to these it is as direct light alone shows it. Empty: there are no
+    /// What paths show is noise to probes and plan: to these it is as it is rendered without. Empty: there are no
     /// paths.
     std::vector<DisplayFramelet> direct_;
     std::vector<float> errors_; ///< left by paths, of each framelet; empty: there are none

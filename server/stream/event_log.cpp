@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr char const* first_line = "framelet events 4";
+constexpr char const* first_line = "framelet events 5";
 
 enum Kind : std::uint8_t {
     viewer = 1,
@@ -129,6 +129,7 @@ void EventLog::begin(ServedScene const& served) {
                                       {"clips", served.clips},
                                       {"light", json_of(served.light)},
                                       {"exposure_bits", std::bit_cast<std::uint32_t>(served.exposure)},
+                                      {"tone_curve", static_cast<int>(served.tone_curve)},
                                       {"bias", served.bias},
                                       {"batch_framelets", served.batch_framelets}};
     std::string const text = std::string(first_line) + "\n" + line.dump() + "\n";
@@ -220,6 +221,7 @@ EventLogReader::EventLogReader(std::filesystem::path const& file) : file_(file),
                    told.at("clips"),
                    light_of(told.at("light")),
                    std::bit_cast<float>(told.at("exposure_bits").get<std::uint32_t>()),
+                   told.at("tone_curve"),
                    told.at("bias"),
                    told.at("batch_framelets")};
     } catch (nlohmann::json::exception const& error) {

@@ -84,7 +84,7 @@ ViewState FrameletStream::state_at(SceneTime clock, PosedScene& scene) const {
     if (scene_camera >= 0 && scene_camera < static_cast<int>(scene.scene().cameras.size())) {
         view.camera = scene.camera(scene_camera, time);
     }
-    return {view, options_.exposure * std::exp2(settings_.exposure_ev), time};
+    return {view, {options_.exposure * std::exp2(settings_.exposure_ev), options_.tone_curve}, time};
 }
 
 /// The scene's camera whose path the viewer has to know; -1: none.
@@ -247,6 +247,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     wanted.link_framelets = options_.follows_link ? bounded_batch(link) : max_batch_framelets;
     wanted.motions = &viewer_.motions;
     wanted.moves_samples = takes_shapes();
+    wanted.light_changes = scene.light_gathering() != nullptr && scene.light_gathering()->is_learning();
     wanted.limits = options_.limits;
     if (scene.path_light() != nullptr) {
         wanted.completion = completion_of_paths;

@@ -15,6 +15,7 @@ namespace framelet {
 
 struct StreamOptions {
     float exposure = 1; ///< factor on radiance, before the viewer's own
+    ToneCurve tone_curve = ToneCurve::neutral;
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
     // The evaluation leaves parts out, to see what each is worth.

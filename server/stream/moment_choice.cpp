@@ -35,7 +35,7 @@ bool MomentChoice::goes_on(ViewState const& present, double now) const {
     ViewState const& held = held_->state;
     return std::floor(now / held_->seconds) == std::floor(held_->begun / held_->seconds) &&
            held.view.viewport == present.view.viewport &&
-           held.view.camera.projection == present.view.camera.projection && held.exposure == present.exposure;
+           held.view.camera.projection == present.view.camera.projection && held.transform == present.transform;
 }
 
 /// True where what is held of the first shows about the second: not after the scene's clock was set to another time,

@@ -2,6 +2,9 @@
 
 #include <utility>
 
+#include <glm/geometric.hpp>
+
+#include "server/render/picture_renderer.h"
 #include "server/scene/motion/bodies.h"
 
 namespace framelet {
@@ -10,12 +13,31 @@ PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene
                        LightOptions const& light)
     : scene_(scene), clips_(std::move(clips)), render_scene_(render_scene),
       animated_(animation_duration(scene, clips_) > 0), switches_(find_switches(scene, clips_)),
-      moving_cameras_(framelet::moving_cameras(scene, clips_)), pose_(evaluate_pose(scene, clips_, 0)) {
+      moving_cameras_(framelet::moving_cameras(scene, clips_)), poses_(scene, clips_) {
     render_scene_.set_clips(clips_);
-    render_scene_.set_pose(pose_);
-    if (light.method == LightMethod::reference) {
-        LampSizes const sizes = lamp_sizes(light, scene_bounds(scene, pose_));
-        path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), sizes);
+    ScenePose const& pose = poses_.at(0);
+    render_scene_.set_pose(pose);
+    if (light.method != LightMethod::direct) {
+        Bounds const bounds = scene_bounds(scene, pose);
+        PathOptions options;
+        options.sizes = lamp_sizes(light, bounds);
+        path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), options);
+        if (light.method == LightMethod::full) {
+            light_cache_ = std::make_unique<LightCache>(bounds.empty() ? 1.0f : glm::length(bounds.size()));
+            gathering_ = std::make_unique<LightGathering>(*path_light_, *light_cache_);
+            render_scene_.set_light(light_cache_.get(), options.sizes);
+            learn_first_light(scene.cameras.empty() ? default_camera(bounds) : camera(0, 0));
+        }
+    }
+}
+
+/// Learns how bright the scene is, and coarsely where, before anybody sees it.
+void PosedScene::learn_first_light(Camera const& camera) {
+    constexpr Viewport few_pixels{160, 120};
+    constexpr std::size_t slice = 4096, slices = 4;
+    render_radiance(render_scene_, camera, few_pixels, 1);
+    for (std::size_t i = 0; i < slices; ++i) {
+        gathering_->work(slice);
     }
 }
 
@@ -25,10 +47,7 @@ bool PosedScene::camera_moves(int index) const {
 }
 
 ScenePose const& PosedScene::pose_of(SceneTime time) {
-    if (pose_.time != time) {
-        pose_ = evaluate_pose(scene_, clips_, time);
-    }
-    return pose_;
+    return poses_.pose().time == time ? poses_.pose() : poses_.at(time);
 }
 
 void PosedScene::pose(SceneTime time) {
@@ -41,6 +60,9 @@ void PosedScene::pose(SceneTime time) {
         render_scene_.set_pose(wanted);
         if (path_light_) {
             path_light_->update();
+        }
+        if (gathering_) {
+            gathering_->note_pose();
         }
     } catch (std::bad_alloc const&) {
         throw SceneUnposed();

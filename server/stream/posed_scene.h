@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "server/render/gathering/light_gathering.h"
 #include "server/render/path/path_light.h"
 #include "server/render/prepared/render_scene.h"
 #include "server/scene/motion/animation.h"
@@ -24,6 +25,7 @@ class PosedScene {
 public:
     /// Poses the scene for time 0. Scene and renderer must outlive it.
     PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene& render_scene, LightOptions const& light = {});
+    ~PosedScene() { render_scene_.set_light(nullptr, {}); }
     PosedScene(PosedScene const&) = delete;
     PosedScene& operator=(PosedScene const&) = delete;
 
@@ -32,6 +34,8 @@ public:
     RenderScene const& render_scene() const { return render_scene_; }
     /// What finds the light of its pose by paths; null where light is direct.
     PathLight const* path_light() const { return path_light_.get(); }
+    /// What gathers light for the cache by which it is rendered; null where it is rendered without one.
+    LightGathering* light_gathering() const { return gathering_.get(); }
     bool is_animated() const { return animated_; }
     /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
@@ -47,14 +51,18 @@ public:
     bool camera_moves(int index) const;
 
 private:
+    void learn_first_light(Camera const& camera);
+
     Scene const& scene_;
     std::vector<Index> const clips_;
     RenderScene& render_scene_;
     bool const animated_;
     std::vector<ClipSwitches> const switches_;
     std::vector<bool> const moving_cameras_;
-    ScenePose pose_; ///< evaluated last
+    PoseEvaluator poses_;
     std::unique_ptr<PathLight> path_light_;
+    std::unique_ptr<LightCache> light_cache_;
+    std::unique_ptr<LightGathering> gathering_;
     /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
     std::optional<SceneTime> rendered_ = 0;
 };

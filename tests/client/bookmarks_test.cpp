@@ -3,7 +3,9 @@
 #include <cstdlib>
 #include <fstream>
 #include <sstream>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include <fcntl.h>
 #include <glm/geometric.hpp>
@@ -12,6 +14,7 @@
 #include <unistd.h>
 
 #include "client/core/camera/camera_path.h"
+#include "client/core/camera/camera_text.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
 #include "tests/client/own_folder.h"
@@ -44,6 +47,18 @@ TEST(CameraFile, IsReadByThePrograms) {
     CameraPath const flat = parse_camera_path(camera_file_text(camera, moment), "test");
     expect_near(flat.at(0), camera);
     EXPECT_EQ(flat.moment, moment);
+}
+
+TEST(CameraFile, IsFoundInAnAddress) {
+    EXPECT_EQ(camera_in_address("http://localhost:7070/#token=a&camera=%7B%22x%22%3A+1%7D&b"), "{\"x\":+1}");
+    EXPECT_EQ(camera_in_address("http://localhost/?camera=no#camera=%7b%zz%"), "{%zz%");
+    EXPECT_FALSE(camera_in_address("camera=of/a/file"));
+    EXPECT_FALSE(camera_in_address("http://localhost/#token=camera=3"));
+    std::string address = "https://there/#camera=";
+    for (char const c : camera_file_text(some_camera(), {})) {
+        address += c == '"' ? "%22" : std::string(1, c);
+    }
+    expect_near(read_camera_path(address).at(0), some_camera());
 }
 
 TEST(Bookmarks, SurviveARestart) {
@@ -98,13 +113,26 @@ TEST(Bookmarks, NamesStayUnlikeEachOther) {
     EXPECT_EQ(bookmarks.all()[1].name, "view 1");
 }
 
+TEST(Bookmarks, WhatIsSaidNamesTheKeyOfTheFirstNine) {
+    std::vector<Bookmark> all;
+    for (std::size_t i = 0; i < 10; ++i) {
+        add_bookmark(all, some_camera());
+        EXPECT_EQ(bookmark_added_text(all), "bookmark view " + std::to_string(i + 1) + " added" +
+                                                (i < 9 ? ": Shift+" + std::to_string(i + 1) + " comes back here" : ""));
+    }
+    all.resize(most_bookmarks);
+    EXPECT_THROW(add_bookmark(all, some_camera()), InputError);
+}
+
 TEST(Bookmarks, ABrokenFileIsOneLineAndIsKept) {
     OwnFolder const folder;
+    std::string const deep = R"({"cameras": [)" + std::string(100000, '[') + std::string(100000, ']') + "]}";
     auto const file = folder.path() / "scene.json";
-    for (std::string const text : {"", "{", "[]", R"({"cameras": 3})", R"({"cameras": [{"name": "a"}]})",
-                                   R"({"cameras": [{"scene_camera": 0}]})",
-                                   R"({"cameras": [{"name": 3, "position": [0,0,1], "target": [0,0,0]}]})",
-                                   R"({"cameras": [{"position": [0,0,1e400], "target": [0,0,0]}]})"}) {
+    for (std::string const& text :
+         std::vector<std::string>{"", "{", "[]", R"({"cameras": 3})", R"({"cameras": [{"name": "a"}]})",
+                                  R"({"cameras": [{"scene_camera": 0}]})",
+                                  R"({"cameras": [{"name": 3, "position": [0,0,1], "target": [0,0,0]}]})",
+                                  R"({"cameras": [{"position": [0,0,1e400], "target": [0,0,0]}]})", deep}) {
         std::ofstream(file) << text;
         Bookmarks bookmarks(file);
         EXPECT_TRUE(bookmarks.all().empty());

@@ -1,4 +1,4 @@
-#include "client/window/overlay/commands.h"
+#include "client/viewer/commands.h"
 
 #include <set>
 #include <tuple>

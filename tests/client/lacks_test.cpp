@@ -1,10 +1,10 @@
-#include "client/window/overlay/lacks.h"
+#include "client/viewer/lacks.h"
 
 #include <algorithm>
 
 #include <gtest/gtest.h>
 
-#include "client/window/overlay/commands.h"
+#include "client/viewer/commands.h"
 #include "client/window/overlay/overlay_text.h"
 
 namespace framelet {
@@ -21,6 +21,11 @@ TEST(Lacks, TheClockIsSetWhereSomethingMovesAndNobodyElseSetsIt) {
 TEST(Lacks, WhatIsThereIsNotLacking) {
     EXPECT_EQ(scene_cameras_lack(1), "");
     EXPECT_NE(scene_cameras_lack(0), "");
+    EXPECT_EQ(bookmark_lacks(2, 1), "");
+    EXPECT_EQ(bookmark_lacks(2, 2), "there are only 2 bookmarks");
+    EXPECT_EQ(bookmark_lacks(0, 0), "there are no bookmarks yet: add one (B)");
+    EXPECT_EQ(removal_lacks(1, 0), "");
+    EXPECT_EQ(removal_lacks(1, -1), "no bookmark has been gone to: Shift+1 goes to the first");
     EXPECT_EQ(smoothing_lacks(true, true), "");
     EXPECT_EQ(smoothing_lacks(false, true), clock_lacks(false, false, true));
     EXPECT_NE(smoothing_lacks(true, false).find("F4"), std::string::npos);

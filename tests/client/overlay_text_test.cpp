@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/window/overlay/commands.h"
-#include "client/window/overlay/lacks.h"
+#include "client/viewer/commands.h"
+#include "client/viewer/lacks.h"
 
 namespace framelet {
 namespace {
@@ -124,20 +124,6 @@ TEST(StatisticsHistory, HasTheNewestFigureAndAMinuteOfOlderOnes) {
     }
     EXPECT_EQ(plots[0].values.front(), 81);
     EXPECT_EQ(plots[0].values.back(), 200);
-}
-
-TEST(OverlayText, EachOverlayHasATooltipAndALegend) {
-    for (std::size_t i = 0; i < drawn_over_names.size(); ++i) {
-        auto const kind = static_cast<DrawnOver>(i);
-        EXPECT_NE(overlay_tip(kind), "") << drawn_over_names[i];
-        std::optional<Legend> const legend = legend_of(kind);
-        ASSERT_EQ(legend.has_value(), kind != DrawnOver::nothing) << drawn_over_names[i];
-        if (legend) {
-            EXPECT_NE(legend->title, "");
-            EXPECT_NE(legend->tip.find(overlay_tip(kind)), std::string::npos);
-            EXPECT_EQ(legend->newest.empty(), legend->oldest.empty());
-        }
-    }
 }
 
 /// Every figure of the window is explained where one points at it, and in a table of the guide.

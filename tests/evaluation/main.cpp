@@ -59,6 +59,8 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
         add_soak_options, [&] { return answer_soak(live, scene_file("vehicle_chase")); });
     add("replay", "A recorded session through the same pipeline: whether the same bytes come out", add_replay_options,
         [&] { return answer_replay(live); });
+    add("link", "A link of this rate and delay before a server, for viewers of any kind", add_link_verb_options,
+        [&] { return answer_link(live); });
     add("serve", "Serves a method to `look`, for `live`", add_serve_options, [&] {
         return answer_serve(live, options.costs_file);
     }).group("");

@@ -1,5 +1,5 @@
 // One picture of a scene by paths of light, or as the server shades it, to be looked at and compared. In: a scene, a
-// camera. Out: a file, and what it took.
+// camera. Out: a file, what it took, and how far the server's light is off the paths.
 #pragma once
 
 #include <filesystem>
@@ -18,6 +18,11 @@ struct ReferencePictureOptions {
     /// `direct`, at the same exposure.
     std::filesystem::path output = "reference.png";
     bool direct = false; ///< as the server shades it, without paths; no EXR
+    bool full = false; ///< likewise, with the light cache, and beside the paths: how far off both are
+    /// With `full`: the scene has moved for so long when the picture is made, and so many paths of each second were
+    /// gathered meanwhile. 0: it stands, and all that is seen is good enough.
+    double moved_seconds = 0;
+    double gathered_per_second = 1e5;
     float sun_degrees = 0, lamp_metres = 0; ///< diameters; 0: hard
     PathOptions paths;
 };

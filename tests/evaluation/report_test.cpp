@@ -7,61 +7,63 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include "tests/evaluation/report/goals.h"
 #include "tests/evaluation/report/report_charts.h"
 #include "tests/evaluation/report/report_page.h"
+#include "tests/evaluation/report/report_tables.h"
 #include "tests/evaluation/report/report_text.h"
 #include "tests/evaluation/report/run_store.h"
 
 namespace framelet::bench {
 namespace {
 
+nlohmann::json live_figures(double psnr, double flip) {
+    return {{"mse", std::pow(10, -0.1 * psnr)},
+            {"psnr", psnr},
+            {"psnr_low", psnr - 1},
+            {"psnr_high", psnr + 1},
+            {"ssim", 0.9},
+            {"flip", flip},
+            {"gap_p99_ms", 30},
+            {"photon_ms", 25},
+            {"pictures_per_second", 40},
+            {"kB_per_second", 1200}};
+}
+
+/// A scene in which `framed+warp` has 30 dB.
+nlohmann::json scene(char const* name, double psnr) {
+    nlohmann::json warp = live_figures(30, 0.1);
+    warp["spacing"] = 2;
+    warp["margin"] = 0;
+    warp["pictures_per_second"] = 20;
+    return {{"scene", name},
+            {"methods",
+             {{"framed+h264", live_figures(20, 0.05)}, {"framed+warp", warp}, {"framelet", live_figures(psnr, 0.1)}}}};
+}
+
 ReportFigures figures() {
     ReportFigures result;
-    for (double const machine : {2.0, 5.0}) {
-        for (auto const& [scene, factor] : {std::pair{"stop", 1.0}, {"globe", 4.0}}) {
-            result.runs.push_back({scene,
-                                   "framed+h264",
-                                   machine,
-                                   0,
-                                   1e-5,
-                                   1e-3 * factor,
-                                   0.1,
-                                   1e-4,
-                                   3,
-                                   {{"moving", 2e-3}, {"settled", 1e-4}}});
-            result.runs.push_back({scene,
-                                   "framelet",
-                                   machine,
-                                   0,
-                                   1e-5,
-                                   5e-4 * factor,
-                                   0.05,
-                                   1e-4,
-                                   3,
-                                   {{"moving", 1e-3}, {"settled", 2e-4}}});
-        }
+    result.commit = "abc";
+    result.live = {scene("stop", 33), scene("fox, flown", 27)};
+    for (LinkCase const& link : link_cases({})) {
+        result.links.push_back({link, scene("stop", link.round_trip > 100 ? 29 : 32)});
     }
-    result.features = {{{"what", "+ mirrors"}, {"render_ns", 300}, {"other_ns", 40}, {"rays", 2}, {"bytes", 1}}};
-    result.commits = {"abc"};
+    for (int const cores : {2, 8}) {
+        result.cores.push_back({"stop", "framed+warp", cores, 1e-3});
+        result.cores.push_back({"stop", "framed+h264", cores, 2e-3});
+        result.cores.push_back({"stop", "framelet", cores, cores == 2 ? 5e-4 : 2e-3});
+        result.cores.push_back({"globe", "framed+warp", cores, 1e-5});
+        result.cores.push_back({"globe", "framelet", cores, 5e-6});
+    }
     return result;
 }
 
-TEST(Report, SpreadsAreGeometric) {
-    Spread const spread = spread_of({1, 100, 10, 1000, 10000});
-    EXPECT_NEAR(spread.mean, 100, 1e-9);
-    EXPECT_NEAR(spread.low, 10, 1e-9);
-    EXPECT_NEAR(spread.high, 1000, 1e-9);
+bool has_line(std::string const& text, std::string const& line) {
+    return text.find(line + "\n") != std::string::npos;
 }
 
-TEST(Report, CurvesAreErrorsOverTheReferencesNoise) {
-    Curves const chart = speed_chart(figures());
-    ASSERT_EQ(chart.curves.size(), 2u);
-    EXPECT_EQ(chart.curves[0].name, "framed+h264");
-    ASSERT_EQ(chart.curves[0].x.size(), 2u);
-    EXPECT_NEAR(chart.curves[0].x[1], 5, 1e-9);
-    EXPECT_NEAR(chart.curves[0].y[0], 200, 1e-9) << "between a hundred and four hundred times the noise";
-    EXPECT_EQ(chart.marks.size(), 3u);
+TEST(Report, EachLinkIsRunOnce) {
+    std::vector<LinkCase> const expected{{5, 20}, {20, 20}, {100, 20}, {20, 0}, {20, 200}};
+    EXPECT_EQ(link_cases({}), expected);
 }
 
 TEST(Report, ParagraphsAreWrapped) {
@@ -75,131 +77,83 @@ TEST(Report, ParagraphsAreWrapped) {
     EXPECT_EQ(wrapped(exact + "b\n"), exact.substr(0, 50) + "\n" + exact.substr(51) + "b\n");
 }
 
-TEST(Report, ALossIsMarked) {
-    ReportOptions options;
-    options.machines = {2, 5};
-    std::string const page = report_page(figures(), options, {}, "framelet-bench report");
-    EXPECT_NE(page.find("| `stop` | 0.50 framed+h264 | - | **2.00** framed+h264 |"), std::string::npos) << page;
-    EXPECT_NE(page.find("Lost: 2 of 4. Median while something moves: 0.50."), std::string::npos) << page;
-    EXPECT_NE(page.find("| + mirrors | 300 | 40 | 2.00 | 1.00 |"), std::string::npos) << page;
-    EXPECT_EQ(page.find("## The real programs"), std::string::npos) << "none was run";
+TEST(Report, WhatIsLostIsInBold) {
+    std::string const live = live_table(figures().live);
+    EXPECT_TRUE(has_line(live, "| `stop` | `framed+warp` (2) | 33.0 / 30.0 | 32.0-34.0 / 29.0-31.0 | 0.900 / 0.900 | "
+                               "0.100 / 0.100 | 40 / 20 | 30 / 30 | 1.2 / 1.2 |"))
+        << live;
+    EXPECT_NE(live.find("| **27.0 / 30.0** |"), std::string::npos) << live;
+    std::string const links = links_table(figures().links);
+    EXPECT_TRUE(has_line(links, "| `stop` | 20 | 0 | 32.0 | 30.0 | 20.0 |")) << links;
+    EXPECT_TRUE(has_line(links, "| `stop` | 20 | 200 | **29.0** | 30.0 | 20.0 |")) << links;
+    std::string const cores = cores_table(figures().cores);
+    EXPECT_TRUE(has_line(cores, "| `stop` | 0.50 framed+warp | **2.00** framed+warp |")) << cores;
+    EXPECT_TRUE(has_line(cores, "| `globe` | 0.50 framed+warp | 0.50 framed+warp |")) << cores;
 }
 
-nlohmann::json live_figures(double psnr, double flip) {
-    return {{"mse", std::pow(10, -0.1 * psnr)},
-            {"psnr", psnr},
-            {"ssim", 0.9},
-            {"flip", flip},
-            {"steadiness", 1e-3},
-            {"gap_p99_ms", 30},
-            {"server_busy", 0.5},
-            {"pictures_per_second", 40},
-            {"kB_per_second", 100}};
+TEST(Report, GoalsAreOfEveryScene) {
+    std::string const goals = goals_table(figures());
+    EXPECT_TRUE(has_line(goals,
+                         "| real programs: MSE over the best rival's | <= 1 in each | 1 of 2; median 2.00, worst "
+                         "2.00 (`fox, flown`) | no |"))
+        << goals;
+    EXPECT_TRUE(has_line(goals, "| 1 - SSIM over the best rival's | <= 1 in each | 2 of 2; median 1.00, worst 1.00 "
+                                "(`stop`) | yes |"))
+        << "as good is not worse\n"
+        << goals;
+    EXPECT_TRUE(has_line(goals, "| pictures a second | >= 30 in each | 2 of 2; median 40, worst 40 (`stop`) | yes |"))
+        << goals;
+    EXPECT_TRUE(has_line(goals, "| motion to photon, display frames | <= 2 in each | 2 of 2; median 1.5, worst 1.5 "
+                                "(`stop`) | yes |"))
+        << goals;
+    EXPECT_TRUE(has_line(goals, "| over links: MSE over the best rival's | <= 1 in each | 4 of 5; median 0.63, worst "
+                                "1.26 (`stop, 20 Mbit/s, 200 ms`) | no |"))
+        << goals;
+    EXPECT_TRUE(has_line(goals,
+                         "| virtual clock: MSE over the best rival's | <= 1 in each | 3 of 4; median 0.50, worst "
+                         "2.00 (`stop, 8 cores`) | no |"))
+        << goals;
 }
 
-TEST(Report, TheRealProgramsStandBesideTheirBestRival) {
-    ReportFigures with_live = figures();
-    nlohmann::json warp = live_figures(33, 0.2);
-    warp["spacing"] = 2;
-    warp["margin"] = 0;
-    with_live.live.push_back(
-        {{"scene", "stop"},
-         {"methods",
-          {{"framed", live_figures(20, 0.05)}, {"framed+warp", warp}, {"framelet", live_figures(30, 0.1)}}}});
-    ReportOptions options;
-    options.machines = {2, 5};
-    std::string const page = report_page(with_live, options, {}, "framelet-bench report");
-    EXPECT_NE(page.find("| `stop` | `framed+warp` (2) | 30.00 / - / **33.00** | **0.900** / - / **0.900** | "
-                        "**0.100** / - / 0.200 |"),
-              std::string::npos)
-        << page;
+TEST(Report, WhatWasNotMeasuredIsNotMet) {
+    std::string const goals = goals_table({});
+    EXPECT_EQ(goals.find("| yes |"), std::string::npos) << goals;
+    EXPECT_NE(goals.find("| not measured | no |"), std::string::npos);
+    std::string const page = report_page({}, {}, {}, "framelet-bench report");
+    EXPECT_EQ(page.find("## The real programs"), std::string::npos) << page;
 }
 
-Goal goal_of(ReportFigures const& of, std::string const& what) {
-    for (Goal const& goal : goals_of(of)) {
-        if (goal.what == what) {
-            return goal;
-        }
-    }
-    ADD_FAILURE() << "there is no goal '" << what << "'";
-    return {};
+TEST(Report, ChartsAreOfTheTablesFigures) {
+    Arrows const live = live_chart(figures().live);
+    ASSERT_EQ(live.arrows.size(), 2u);
+    EXPECT_EQ(live.arrows[0].name, "stop");
+    EXPECT_EQ(live.arrows[0].from, (std::array<double, 2>{20, 30}));
+    EXPECT_EQ(live.arrows[0].to, (std::array<double, 2>{40, 33}));
+    Panels const links = links_chart(figures().links, {});
+    ASSERT_EQ(links.panels.size(), 2u) << "rates and round trips of one scene";
+    EXPECT_EQ(links.panels[0].curves.size(), 3u);
+    EXPECT_EQ(links.panels[0].curves[0].x, (std::vector<double>{5, 20, 100}));
+    EXPECT_EQ(links.panels[1].curves[0].x, (std::vector<double>{0, 20, 200}));
+    Curves const cores = cores_chart(figures().cores);
+    ASSERT_EQ(cores.curves.size(), 3u);
+    EXPECT_EQ(cores.curves[0].name, "framed+warp");
+    EXPECT_EQ(cores.curves[0].x, (std::vector<double>{2, 8}));
+    EXPECT_NEAR(cores.curves[0].y[0], 40, 1e-9) << "between 1e-3 and 1e-5";
 }
 
-TEST(Goals, WhatWasNotMeasuredIsNotMet) {
-    for (Goal const& goal : goals_of({})) {
-        EXPECT_FALSE(goal.met) << goal.what;
-        EXPECT_EQ(goal.figure, "not measured") << goal.what;
-    }
-    EXPECT_NE(goals_table({{"speed", "<= 1", "2", false}, {"height", ">= 1", "2", true}})
-                  .find("| speed | <= 1 | 2 | no |\n| height | >= 1 | 2 | yes |\n"),
-              std::string::npos);
-}
-
-TEST(Goals, LostCellsAreCountedScenesTimesMachines) {
-    ReportFigures runs = figures();
-    char const* const what = "virtual clock, no limit: MSE over the best rival's, scenes x machines";
-    Goal const won = goal_of(runs, what);
-    EXPECT_EQ(won.figure, "4 of 4; median 0.50, worst 0.50 (`globe, 2 samples`)");
-    EXPECT_TRUE(won.met);
-    runs.runs.back().mse = 6e-3; // `framelet` in globe on the fast machine
-    Goal const lost = goal_of(runs, what);
-    EXPECT_EQ(lost.figure, "3 of 4; median 0.50, worst 1.50 (`globe, 5 samples`)");
-    EXPECT_FALSE(lost.met);
-}
-
-TEST(Goals, ThoseOfTheRealProgramsAreOfEveryScene) {
-    ReportFigures runs;
-    auto const scene = [](char const* name, double psnr) {
-        nlohmann::json own = live_figures(psnr, 0.1), warp = live_figures(30, 0.1);
-        own["photon_ms"] = 25;
-        own["viewer_busy"] = 0.4;
-        own["steadiness"] = 5e-4;
-        return nlohmann::json{{"scene", name}, {"methods", {{"framed+warp", warp}, {"framelet", own}}}};
-    };
-    runs.live = {scene("stop", 33), scene("teleport", 33), scene("fox, flown", 33)};
-    runs.narrow = {scene("stop, narrow link", 27)};
-    EXPECT_EQ(goal_of(runs, "real programs, narrow links included: MSE over the best rival's").figure,
-              "3 of 4; median 0.50, worst 2.00 (`stop, narrow link`)");
-    EXPECT_TRUE(goal_of(runs, "MSE over the best rival's, median").met);
-    EXPECT_TRUE(goal_of(runs, "1 - SSIM over the best rival's").met) << "as good is not worse";
-    EXPECT_EQ(goal_of(runs, "motion to photon, display frames").figure, "4 of 4; median 1.5, worst 1.5 (`stop`)");
-    EXPECT_EQ(goal_of(runs, "server busy, of what the viewer leaves of the machine").figure,
-              "0 of 4; median 0.83, worst 0.83 (`stop`)");
-    EXPECT_EQ(goal_of(runs, "unsteadiness over `framed+warp`'s, where something moves").figure,
-              "3 of 3; median 0.50, worst 0.50 (`stop`)")
-        << "teleport only jumps";
-    EXPECT_EQ(goal_of(runs, "painting a changed pixel, ns of a core").figure, "not measured");
-}
-
-ReportRun over_link(char const* method, double bits, double mse) {
-    return {"stop", method, 10, bits, 1e-5, mse, 0, 0, bits, {}};
-}
-
-TEST(Goals, BitsAreComparedWhereBothErrAlike) {
-    std::vector<ReportRun> runs{over_link("framelet", 8, 1e-2), over_link("framelet", 32, 1e-4),
-                                over_link("framed+warp", 4, 1e-2), over_link("framed+warp", 16, 1e-4)};
-    EXPECT_NEAR(bits_at_equal_error(runs, "stop", "framed+warp"), 2, 1e-9) << "at 1e-3: 16 over 8";
-    EXPECT_TRUE(std::isnan(bits_at_equal_error(runs, "stop", "tsar")));
-    runs[0].mse = 1e-5; // now all of its errors are below all of the other's
-    runs[1].mse = 1e-6;
-    EXPECT_NEAR(bits_at_equal_error(runs, "stop", "framed+warp"), 0.5, 1e-9) << "8, at most, over 16, at least";
-    runs[0].mse = runs[1].mse = 0.1; // now all of them are above
-    EXPECT_TRUE(std::isinf(bits_at_equal_error(runs, "stop", "framed+warp")));
-}
-
-TEST(RunStore, WhatWasRunIsNotRunAgain) {
+TEST(RunStore, WhatACommitHasRunIsNotRunAgain) {
     auto const folder = std::filesystem::temp_directory_path() / ("framelet-report-" + std::to_string(getpid()));
     int runs = 0;
     auto const run = [&runs] { return nlohmann::json(++runs); };
     RunStore first(folder, "one", 2);
     EXPECT_EQ(first.get("a", run), 1);
     EXPECT_EQ(first.get("a", run), 1);
-    RunStore second(folder, "two", 2);
-    EXPECT_EQ(second.get("a", run), 1);
-    EXPECT_EQ(second.get("b", run), 2);
-    EXPECT_EQ(second.commits(), (std::set<std::string>{"one", "two"}));
+    RunStore again(folder, "one", 2);
+    EXPECT_EQ(again.get("a", run), 1);
     std::ofstream(folder / "a.json") << "half of it";
-    EXPECT_EQ(second.get("a", run), 3);
+    EXPECT_EQ(again.get("a", run), 2);
+    RunStore other(folder, "two", 2);
+    EXPECT_EQ(other.get("a", run), 3) << "a page is of one commit";
     std::filesystem::remove_all(folder);
 }
 

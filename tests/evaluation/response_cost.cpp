@@ -51,7 +51,7 @@ ResponseCost response_cost(BenchScene& scene, Viewport viewport, double samples_
             fit_layers(rendered[i], ImagePlane(viewport), {1e-3f}, shapes[i]);
         }
         double const learnt = processor_seconds_of([&] {
-            sent = refresh.learn(plan, displayed, rendered, probes.luma());
+            sent = refresh.learn(plan, displayed, rendered, probes.looks());
             refresh.note_sent(plan, ++batch, displayed, rendered, sent, shapes);
         });
         if (input.now >= start) {

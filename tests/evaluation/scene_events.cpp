@@ -70,15 +70,6 @@ SceneEvents events_of(std::string const& name) {
     return events;
 }
 
-Phase phase_at(SceneEvents const& events, double time) {
-    auto const since = [time](double event) { return time >= event && time < event + event_seconds; };
-    if (std::ranges::any_of(events.times, since)) {
-        return Phase::event;
-    }
-    auto const within = [time](auto const& motion) { return time >= motion.first && time < motion.second; };
-    return std::ranges::any_of(events.motions, within) ? Phase::moving : Phase::settled;
-}
-
 std::size_t settings_made(std::vector<ClockSetting> const& settings, double when) {
     return static_cast<std::size_t>(std::ranges::upper_bound(settings, when, {}, &ClockSetting::when) -
                                     settings.begin());

@@ -20,14 +20,6 @@ SceneEvents events_of(GltfDocument const& document, double duration);
 /// Events of the generator's scene of that name. Throws InputError where it has none.
 SceneEvents events_of(std::string const& name);
 
-enum class Phase { moving, event, settled };
-
-/// Seconds that an event lasts.
-inline constexpr double event_seconds = 0.25;
-
-/// Phase of the scene at `time`; `event` takes precedence over `moving`.
-Phase phase_at(SceneEvents const& events, double time);
-
 /// The scene's clock is set, which nobody knows of before.
 struct ClockSetting {
     double when = 0; ///< seconds of the run

@@ -12,12 +12,8 @@ namespace {
 TEST(SceneEvents, AreThoseOfTheGenerator) {
     SceneEvents const stop = events_of(make_stop_scene({.duration = 6, .moving = 3}), 6);
     EXPECT_EQ(stop.times, std::vector<double>{3});
-    EXPECT_EQ(phase_at(stop, 1), Phase::moving);
-    EXPECT_EQ(phase_at(stop, 3.1), Phase::event);
-    EXPECT_EQ(phase_at(stop, 3 + event_seconds), Phase::settled);
     SceneEvents const flicker = events_of(make_flicker_scene({.duration = 4, .lit = {true, true, false, false}}), 4);
     EXPECT_EQ(flicker.times, std::vector<double>{2});
-    EXPECT_EQ(phase_at(flicker, 1), Phase::settled);
     EXPECT_EQ(events_of("teleport").times, (std::vector<double>{1, 2, 3, 4, 5}));
 }
 

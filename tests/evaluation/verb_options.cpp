@@ -198,7 +198,18 @@ void add_reference_picture_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--lamp-size", picture.lamp_metres, "Diameter of point and spot lights, metres; 0: hard shadows")
         ->check(number_in(0.0, 1e6))
         ->capture_default_str();
-    verb.add_flag("--direct", picture.direct, "As the server shades it, without paths");
+    CLI::Option* const direct = verb.add_flag("--direct", picture.direct, "As the server shades it, without paths");
+    CLI::Option* const full =
+        verb.add_flag("--full", picture.full, "With light of the light cache, and how far it is off the paths")
+            ->excludes(direct);
+    CLI::Option* const moved =
+        verb.add_option("--moved", picture.moved_seconds, "With --full: the scene has moved for so long, seconds")
+            ->needs(full)
+            ->check(number_in(0.0, 60.0));
+    verb.add_option("--gathered", picture.gathered_per_second, "With --moved: paths that are gathered in each second")
+        ->needs(moved)
+        ->check(number_in(0.0, 1e9))
+        ->capture_default_str();
 }
 
 void add_report_options(CLI::App& verb, VerbOptions& options) {
@@ -206,15 +217,6 @@ void add_report_options(CLI::App& verb, VerbOptions& options) {
     verb.add_option("--folder", report.folder, "Keeps each run's figures: what is there is not run again")
         ->capture_default_str();
     verb.add_option("--documents", report.documents, "Folder for RESULTS.md and pictures/")->capture_default_str();
-    verb.add_option("--machines", report.machines, "Servers, samples a displayed pixel and second")
-        ->delimiter(',')
-        ->check(number_in(0.5, 60.0));
-    verb.add_option("--links", report.links, "Links, bits a displayed pixel and second")
-        ->delimiter(',')
-        ->check(number_in(0.01, 1e4));
-    verb.add_option("--live-scenes", options.live_scenes, "Scenes of the real programs' runs")->delimiter(',');
-    verb.add_option("--clock-scenes", options.clock_scenes, "Those that run on both clocks (default: the same)")
-        ->delimiter(',');
     verb.add_option("--assets", options.assets,
                     "Folder of models: the real programs also fly through those that tests/evaluation/flights names");
     verb.add_flag("--no-live", options.without_live, "No runs of the real programs");

@@ -50,7 +50,6 @@ struct VerbOptions {
     std::vector<std::string> without; ///< parts that the ablation leaves out
     ReferencePictureOptions reference_picture; ///< for `reference`
     ReportOptions report;
-    std::vector<std::string> live_scenes, clock_scenes; ///< files or names, for the report
     std::filesystem::path assets; ///< folder of models, for the report's flights; empty: none
     bool without_live = false;
     std::filesystem::path gate_file = source_folder / "tests/evaluation/gate.json";

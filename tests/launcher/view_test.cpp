@@ -23,13 +23,14 @@ bool lives(pid_t pid) {
     return ::kill(pid, 0) == 0;
 }
 
-/// A folder with framelet in it, and this script in place of the viewer, which has the folder in $here.
+/// A folder with framelet in it, and this script in place of the viewer or another program, which has the folder in
+/// $here.
 class Programs {
 public:
-    explicit Programs(std::string const& viewer) {
+    explicit Programs(std::string const& viewer, std::string const& program = "framelet-viewer") {
         std::filesystem::copy_file(FRAMELET_LAUNCHER, framelet());
-        std::string const file = folder_.write(
-            "framelet-viewer", "#!/bin/sh\nhere=${0%/*}\nprintf '%s\\n' \"$@\" >$here/arguments\n" + viewer + "\n");
+        std::string const file =
+            folder_.write(program, "#!/bin/sh\nhere=${0%/*}\nprintf '%s\\n' \"$@\" >$here/arguments\n" + viewer + "\n");
         std::filesystem::permissions(file, std::filesystem::perms::owner_all);
     }
 
@@ -55,6 +56,13 @@ TEST(View, BecomesTheViewerAndHandsOnWhatIsAsked) {
                   "--server-option=--exposure=1\n");
 }
 
+TEST(View, WithWebBecomesTheServer) {
+    Programs const programs("exit 5", "framelet-server");
+    Process view(programs.framelet(), {"view", "--web", scene_file, "--up", "z", "--", "--quiet"});
+    EXPECT_EQ(view.wait(patience), 5) << view.errors();
+    EXPECT_EQ(programs.arguments(), "--browser\n--port=0\n--up=z\n--quiet\n--\n" + scene_file + "\n");
+}
+
 struct Misuse {
     std::vector<std::string> words;
     int exit_code;
@@ -73,7 +81,8 @@ TEST(View, ACommandLineOfNoUseIsOneLineAndAnExitCode) {
     Programs const programs("exit 0");
     for (Misuse const& misuse : {Misuse{{}, 2, "subcommand"}, Misuse{{"view"}, 2, "SCENE"},
                                  Misuse{{"view", "--size", "3", "a.glb"}, 2, "\"3\""},
-                                 Misuse{{"view", "--painter", "3", "a.glb"}, 2, "auto, cpu or gpu"}}) {
+                                 Misuse{{"view", "--painter", "3", "a.glb"}, 2, "auto, cpu or gpu"},
+                                 Misuse{{"view", "--web", "--painter", "cpu", "a.glb"}, 2, "--web"}}) {
         expect_line(programs.framelet(), misuse);
     }
     std::filesystem::remove(programs.viewer());

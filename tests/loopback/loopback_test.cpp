@@ -476,7 +476,7 @@ TEST(Loopback, BadInputGetsOneLineAndTheRightExitCode) {
         {FRAMELET_SERVER, {scene_file, "--scene", "99"}, 1, "there is no scene '99'"},
         {FRAMELET_SERVER, {scene_file, scene_file, "--scene", "0"}, 2, "--scene chooses a scene of one file"},
         {FRAMELET_SERVER, {scene_file, "--up", "w"}, 2, "x, y or z, not 'w'"},
-        {FRAMELET_SERVER, {scene_file, "--light", "moon"}, 2, "light is direct or reference, not 'moon'"},
+        {FRAMELET_SERVER, {scene_file, "--light", "moon"}, 2, "light is direct, full or reference, not 'moon'"},
         {FRAMELET_SERVER, {scene_file, "--sun-size", "91"}, 2, "from 0 to 90"},
         {FRAMELET_SERVER, {scene_file, "--lamp-size", "nan"}, 2, "--lamp-size"},
         {FRAMELET_SERVER, {scene_file, "--unit", "parsec"}, 2, "mm, cm, m, km, in or ft, not 'parsec'"},

@@ -20,6 +20,7 @@ ReplayFigures replay(EventLogReader& log, PosedScene& scene) {
     ServedScene const& served = log.served();
     StreamOptions options;
     options.exposure = served.exposure;
+    options.tone_curve = served.tone_curve;
     options.bias = served.bias;
     options.batch_framelets = served.batch_framelets;
     std::map<std::uint64_t, Replayed> sessions;

@@ -32,6 +32,10 @@ until grep -q "listening on 0.0.0.0:7070" /tmp/served.log; do
     sleep 0.1
 done
 framelet-client 127.0.0.1 --size 320x180 --until-converged >/dev/null || fail "the image's server shows nothing"
+exec 3<>/dev/tcp/127.0.0.1/7070
+printf 'GET / HTTP/1.0\r\nHost: localhost\r\n\r\n' >&3
+grep -q '<title>framelet' <&3 || fail "the image's server has no page for browsers"
+exec 3<&-
 kill "$server"
 wait "$server" || fail "the image's server ended with $?: $(cat /tmp/served.log)"
 

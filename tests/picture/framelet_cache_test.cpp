@@ -248,6 +248,24 @@ TEST(FrameletCache, MemoryIsBounded) {
     }
 }
 
+/// Each moment has a cache, and in motion no framelet is finer than pixels.
+TEST(FrameletCache, HasNoRoomForWhatIsFinerThanPixelsUntilItComes) {
+    ImagePlane const plane({640, 360});
+    FrameletCache cache(plane);
+    std::size_t const empty = cache.memory_bytes();
+    auto const hold = [&](std::uint64_t number, int depth) {
+        cache.insert(make_batch(plane, number, {constant_framelet(plane, make_tile(depth, 3, 2), 9)}));
+        EXPECT_EQ(cache.finest_depth(), std::max(depth, plane.pixel_depth()));
+        EXPECT_NE(cache.find(depth, 3, 2), nullptr);
+        EXPECT_EQ(cache.find(plane.max_depth(), 3, 2) != nullptr, depth == plane.max_depth());
+    };
+    hold(1, plane.pixel_depth() - 1);
+    hold(2, plane.pixel_depth());
+    EXPECT_LT(cache.memory_bytes() - sizeof(FrameletRoom::Chunk), 2 * empty);
+    hold(3, plane.max_depth());
+    EXPECT_GT(cache.memory_bytes() - sizeof(FrameletRoom::Chunk), 10 * empty);
+}
+
 TEST(FrameletCache, KeepsOnlyWhatItIsTold) {
     ImagePlane const plane({64, 64});
     FrameletCache cache(plane);

@@ -112,6 +112,16 @@ TEST(WebDoor, OnlyPagesOfItsOwnOriginMayConnect) {
     EXPECT_EQ(status(upgrade("http://other.example"), page), 403u);
 }
 
+TEST(WebDoor, APageIsToldThatItIsNotLetIn) {
+    WebRequest asked = request(http::verb::post, "/session");
+    asked.set(http::field::origin, "http://localhost:7070");
+    EXPECT_EQ(status(asked), 405u) << "it would be let in";
+    asked.set(http::field::origin, "http://127.0.0.1:7070");
+    WebResponse const answer = web_answer(asked, small_page(), true).value();
+    EXPECT_EQ(answer.result_int(), 403u);
+    EXPECT_NE(answer.body().find("--web-origin"), std::string::npos);
+}
+
 TEST(WebDoor, OnTheLoopbackOnlyNamesOfThisMachine) {
     for (char const* host :
          {"localhost", "LocalHost:1", "a.localhost:1", "127.0.0.1:7070", "127.9.9.9", "[::1]:7070"}) {
@@ -231,6 +241,20 @@ TEST(WebStreamWithTls, ManyMessagesBothWays) {
     handshakes.stop();
 }
 
+TEST_F(WebStream, APageThatIsLeftIsNotCutOff) {
+    for (auto const code :
+         {websocket::close_code::going_away, websocket::close_code::normal, websocket::close_code::none}) {
+        auto [one, two] = thread_.connect();
+        End other(plain_stream(std::move(two), std::make_shared<WebPage>(small_page())));
+        other.start(thread_);
+        websocket::stream<Socket&> browser(one);
+        browser.handshake("localhost", "/session");
+        browser.close(code);
+        EXPECT_TRUE(other.wait_for_close().has_value());
+        EXPECT_EQ(other.stream->was_cut(), code != websocket::close_code::going_away) << code;
+    }
+}
+
 TEST_F(WebStream, FramesGoThroughTheSameDoor) {
     end.start(thread_);
     Bytes const frame = framed(encode_message(Ack{1, 2, 3}));
@@ -269,6 +293,7 @@ TEST_F(WebStream, SeveralFilesByOneConnection) {
     EXPECT_NE(all.find("<p>a page</p>HTTP/1.1 200 OK"), std::string::npos);
     EXPECT_TRUE(all.ends_with(std::string(70000, 'w')));
     EXPECT_EQ(end.wait_for_close(), "the other side closed the connection");
+    EXPECT_TRUE(end.stream->asks_for_files());
 }
 
 TEST_F(WebStream, HostileRequestsEnd) {

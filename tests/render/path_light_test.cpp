@@ -43,7 +43,9 @@ struct Traced {
 
 /// A picture of the sums of so many paths, which come in these steps.
 Traced traced(LitBall const& ball, std::vector<int> const& steps) {
-    PathLight const light(ball.render_scene->prepared(), sizes);
+    PathOptions options;
+    options.sizes = sizes;
+    PathLight const light(ball.render_scene->prepared(), options);
     ImagePlane const plane(viewport);
     ViewRays const view = make_view_rays(ball.camera, viewport);
     PathSums sums;

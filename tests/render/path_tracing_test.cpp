@@ -1,11 +1,14 @@
 // Light that paths find, against what is known of it by mathematics.
 #include "server/render/path/path_tracing.h"
 
+#include <algorithm>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 #include <tbb/parallel_for.h>
 
+#include "box_scene.h"
 #include "scene_builder.h"
 #include "server/render/path/path_picture.h"
 #include "server/render/path/path_random.h"
@@ -53,34 +56,6 @@ PathOptions lambertian(int paths) {
     options.paths = paths;
     options.lambertian = true;
     return options;
-}
-
-Material glowing(Vec3 base, Vec3 emissive) {
-    Material m = matte(base);
-    m.emissive = emissive;
-    return m;
-}
-
-/// The walls of the cube [0, 1]^3 seen from inside: corner and sides of x = 0, x = 1, y = 0, ..
-struct Wall {
-    Vec3 corner, side_u, side_v;
-
-    Vec3 normal() const { return glm::cross(side_u, side_v); }
-    Vec3 at(float u, float v) const { return corner + side_u * u + side_v * v; }
-};
-constexpr int ceiling = 3;
-std::array<Wall, 6> cube_walls() {
-    Vec3 const x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    return {{{{}, y, z}, {x, z, y}, {{}, z, x}, {y, x, z}, {{}, x, y}, {z, y, x}}};
-}
-
-Scene cube(Material const& walls) {
-    Scene scene;
-    scene.materials.push_back(walls);
-    for (Wall const& wall : cube_walls()) {
-        add(scene, quad(wall.corner, wall.side_u, wall.side_v, 0));
-    }
-    return scene;
 }
 
 TEST(PathTracing, FurnaceIsWhite) {
@@ -220,88 +195,14 @@ TEST(PathTracing, ParallelDiscsExchangeTheirFormFactor) {
     EXPECT_NEAR(sum / points, 0.6 * 2 * form_factor, 0.002 * 0.6 * 2 * form_factor);
 }
 
-/// Form factor from a point to a parallelogram above its horizon: Lambert's sum over edges ([Schröder 1993] has it).
-double point_form_factor(Vec3 const& at, Vec3 const& normal, Wall const& patch) {
-    std::array<glm::dvec3, 4> corners;
-    Vec3 const around[] = {patch.at(0, 0), patch.at(1, 0), patch.at(1, 1), patch.at(0, 1)};
-    std::transform(std::begin(around), std::end(around), corners.begin(),
-                   [&](Vec3 const& corner) { return glm::normalize(glm::dvec3(corner) - glm::dvec3(at)); });
-    double sum = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        glm::dvec3 const& a = corners[k];
-        glm::dvec3 const& b = corners[(k + 1) % 4];
-        glm::dvec3 const across = glm::cross(a, b);
-        double const sine = glm::length(across);
-        if (sine > 1e-12) {
-            sum += std::atan2(sine, glm::dot(a, b)) * glm::dot(across / sine, glm::dvec3(normal));
-        }
-    }
-    return std::abs(sum) / (2 * std::numbers::pi);
-}
-
 TEST(PathTracing, GreyBoxAgreesWithRadiosity) {
-    constexpr float albedo = 0.6f, emitted = 4;
-    constexpr int side = 12; // patches along a wall; the middle third of the ceiling shines
-    std::array<Wall, 6> const walls = cube_walls();
-    struct Patch {
-        Wall area;
-        int wall;
-        double emitted, radiance;
-    };
-    std::vector<Patch> patches;
-    for (int w = 0; w < 6; ++w) {
-        for (int i = 0; i < side * side; ++i) {
-            int const x = i % side, y = i / side;
-            Wall const& wall = walls[static_cast<std::size_t>(w)];
-            bool const shines = w == ceiling && x / (side / 3) == 1 && y / (side / 3) == 1;
-            patches.push_back(
-                {{wall.at(float(x) / side, float(y) / side), wall.side_u / float(side), wall.side_v / float(side)},
-                 w,
-                 shines ? double(emitted) : 0.0,
-                 0});
-        }
-    }
-    auto const gathered = [&](Vec3 const& at, int wall, std::vector<double>& factors) {
-        factors.clear();
-        for (Patch const& patch : patches) {
-            Vec3 const normal = walls[static_cast<std::size_t>(wall)].normal();
-            factors.push_back(patch.wall == wall ? 0 : point_form_factor(at, normal, patch.area));
-        }
-    };
-    std::vector<std::vector<double>> factors(patches.size());
-    for (std::size_t i = 0; i < patches.size(); ++i) {
-        gathered(patches[i].area.at(0.5f, 0.5f), patches[i].wall, factors[i]);
-    }
-    auto const radiance_at = [&](std::vector<double> const& from) {
-        double sum = 0;
-        for (std::size_t j = 0; j < patches.size(); ++j) {
-            sum += from[j] * patches[j].radiance;
-        }
-        return double(albedo) * sum;
-    };
-    for (int iteration = 0; iteration < 40; ++iteration) { // the rest is below 0.6^40
-        for (std::size_t i = 0; i < patches.size(); ++i) {
-            patches[i].radiance = patches[i].emitted + radiance_at(factors[i]);
-        }
-    }
-
-    Scene scene = cube(matte(Vec3(albedo)));
-    scene.materials.push_back(glowing(Vec3(albedo), Vec3(emitted)));
-    Wall const& top = walls[ceiling];
-    add(scene, quad(top.at(1.0f / 3, 1.0f / 3) + top.normal() * 1e-4f, top.side_u / 3.0f, top.side_v / 3.0f, 1));
-    RenderScene const ready(scene, black());
+    GreyBox const box;
+    RenderScene const ready(box.scene, black());
     PathScene const paths(ready.prepared());
-    struct Point {
-        int wall;
-        float u, v;
-    };
-    std::vector<double> from;
-    for (Point const& p : {Point{2, 0.5f, 0.5f}, Point{2, 0.2f, 0.7f}, Point{0, 0.5f, 0.4f}, Point{5, 0.7f, 0.3f},
-                           Point{ceiling, 0.15f, 0.5f}}) {
-        Wall const& wall = walls[static_cast<std::size_t>(p.wall)];
+    for (GreyBox::Point const& p : GreyBox::points) {
+        Wall const wall = cube_walls()[static_cast<std::size_t>(p.wall)];
         Vec3 const at = wall.at(p.u, p.v);
-        gathered(at, p.wall, from);
-        double const expected = radiance_at(from);
+        double const expected = box.radiance(p);
         double const seen = double(look(paths, at + wall.normal() * 0.1f, -wall.normal(), lambertian(65536)).g);
         EXPECT_NEAR(seen, expected, 0.006 * expected) << p.wall << " " << p.u << " " << p.v;
     }
@@ -330,24 +231,49 @@ TEST(PathTracing, PenumbraIsAsWideAsTheSun) {
 }
 
 TEST(PathTracing, HardLampsLightAsDirectShadingHasThem) {
-    Scene scene = floor_of(0.7f);
-    scene.materials[0].roughness = 0.4f;
-    Light lamp;
-    lamp.intensity = 7;
-    add_light(scene, lamp, {0, 2, 0}, {0, -1, 0});
-    Light spot;
-    spot.type = LightType::spot;
-    spot.intensity = 9;
-    spot.outer_cone = 0.6f;
-    add_light(scene, spot, {1, 2, 0}, {-0.3f, -1, 0});
-    RenderScene const ready(scene, black());
-    PathScene const paths(ready.prepared());
-    PathOptions options;
-    options.paths = 4096;
-    for (float const x : {-0.5f, 0.1f, 0.8f}) {
-        Vec3 const from = Vec3(x, 1.5f, 0.4f), to = glm::normalize(Vec3(0, -1, -0.3f));
-        Vec3 const direct = look_along(ready, from, to).radiance;
-        EXPECT_NEAR(look(paths, from, to, options).g, direct.g, 0.015f * direct.g) << x;
+    for (auto const& [metallic, roughness] : {std::pair{0.0f, 0.4f}, std::pair{1.0f, 0.4f}, std::pair{1.0f, 1.0f}}) {
+        Scene scene = floor_of(0.7f);
+        scene.materials[0].metallic = metallic;
+        scene.materials[0].roughness = roughness;
+        Light lamp;
+        lamp.intensity = 7;
+        add_light(scene, lamp, {0, 2, 0}, {0, -1, 0});
+        Light spot;
+        spot.type = LightType::spot;
+        spot.intensity = 9;
+        spot.outer_cone = 0.6f;
+        add_light(scene, spot, {1, 2, 0}, {-0.3f, -1, 0});
+        RenderScene const ready(scene, black());
+        PathScene const paths(ready.prepared());
+        PathOptions options;
+        options.paths = 4096;
+        for (float const x : {-0.5f, 0.1f, 0.8f}) {
+            Vec3 const from = Vec3(x, 1.5f, 0.4f), to = glm::normalize(Vec3(0, -1, -0.3f));
+            Vec3 const direct = look_along(ready, from, to).radiance;
+            EXPECT_NEAR(look(paths, from, to, options).g, direct.g, 0.015f * direct.g) << metallic << roughness << x;
+        }
+    }
+}
+
+TEST(PathTracing, RoughMetalsReflectTheSkyAsDirectShadingHasThem) {
+    FloatImage sky(64, 32);
+    for (int y = 0; y < sky.height; ++y) {
+        std::fill_n(&sky.at(0, y), sky.width, y < sky.height / 2 ? Vec3(1) : Vec3(0));
+    }
+    for (float const roughness : {0.5f, 0.7f, 1.0f}) {
+        Scene scene = floor_of(0.7f);
+        scene.materials[0].metallic = 1;
+        scene.materials[0].roughness = roughness;
+        RenderScene const ready(scene, Environment(sky));
+        PathScene const paths(ready.prepared());
+        PathOptions options;
+        options.paths = 16384;
+        for (float const rise : {1.0f, 0.5f, 0.2f}) {
+            Vec3 const from(0, 1, 0), to = glm::normalize(Vec3(0, -rise, -1));
+            Vec3 const direct = look_along(ready, from, to).radiance;
+            float const seen = look(paths, from, to, options).g;
+            EXPECT_NEAR(direct.g, seen, 0.06f * seen) << roughness << " " << rise;
+        }
     }
 }
 

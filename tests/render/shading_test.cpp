@@ -59,7 +59,8 @@ float floor_reflectance(float base, float cosine) {
     float const fresnel = 0.04f + 0.96f * std::pow(1 - half_cosine, 5.0f);
     // Roughness 1: D = 1/pi, V = 0.5 / (cos + 1).
     float const visibility = 0.5f / (cosine + 1);
-    return (1 - fresnel) * base / pi + fresnel * visibility / pi;
+    AmbientShares const shares = ambient_shares(SplitSumTable().at(1, 1), Vec3(0.04f), Vec3(base));
+    return shares.diffuse.g / pi + fresnel * visibility / pi;
 }
 
 TEST(Shading, DirectionalLightFollowsTheCosine) {

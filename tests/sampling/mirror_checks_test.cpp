@@ -46,21 +46,21 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     mirror.look(view_at(Vec3(0)), no_motions);
     mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), wall));
     std::vector<Probe> probes;
-    list_probes(mirror, grid, probes);
+    list_probes(mirror, grid, false, probes);
     EXPECT_TRUE(probes.empty()) << "what is of the moment needs none";
     mirror.look(later, no_motions);
-    list_probes(mirror, grid, probes);
+    list_probes(mirror, grid, false, probes);
     ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
     std::vector<float> luma;
     for (Probe const& probe : probes) {
         EXPECT_NEAR(probe.luma, 0.5f, 4e-3f);
         luma.push_back(probe.luma);
     }
-    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, {luma}, grid.spacing)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
         luma[i] = lamp(probes[i].position.x, probes[i].position.y).luma;
     }
-    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, luma, grid.spacing)));
+    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, {luma}, grid.spacing)));
     for (int y = 0; y < viewport.height - 16; y += cell_side) {
         for (int x = 0; x < viewport.width; x += cell_side) {
             if (x < 48 || x >= 72) { // the squares of probes on both sides of the change
@@ -72,6 +72,45 @@ TEST(Mirror, WhatLooksOtherwiseIsStaleUntilItComes) {
     EXPECT_TRUE(std::ranges::all_of(cells_of(mirror), [](Cell const& cell) { return cell.stale == 0; }));
 }
 
+/// Of a wall so rough that its luma says nothing, at the same scene time.
+TEST(Mirror, WhatWasLitByLessThanIsKnownNowIsStale) {
+    auto const rough = [](float x, float y) {
+        return Seen{10, std::fmod(x + 3 * y, 7.0f) < 3 ? 0.7f : 0.3f, static_body, 2.0f};
+    };
+    Mirror mirror(viewport);
+    mirror.look(view_at(Vec3(0)), no_motions);
+    mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth(), rough));
+    std::vector<Probe> probes;
+    list_probes(mirror, cell_grid(cell_side, 16, 0), true, probes);
+    ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
+    std::vector<float> luma;
+    for (Probe const& probe : probes) {
+        luma.push_back(rough(probe.position.x, probe.position.y).luma);
+    }
+    std::vector<SampleLight> light(probes.size(), {2.0f, 0.5f});
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, {luma, light}, 16)));
+    light.assign(probes.size(), {2.01f, 0.5f});
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, {luma, light}, 16))) << "less than a display step";
+    light.assign(probes.size(), {2.2f, 0.5f});
+    std::vector<CellFault> const faults = find_stale(mirror, probes, {luma, light}, 16);
+    EXPECT_EQ(faults.size(), probes.size());
+    for (std::size_t i = 0; i < faults.size(); ++i) {
+        float const change = luma[i] * 0.5f * (0.2f / 2.2f) / 2.2f; // of which half is of this light, and luma a root
+        EXPECT_NEAR(faults[i].stale, change * change, 1e-6f);
+    }
+    std::vector<Probe> others;
+    mirror.look(view_at(Vec3(0), 1), no_motions);
+    list_probes(mirror, cell_grid(cell_side, 16, 0), false, others);
+    ASSERT_EQ(others.size(), probes.size());
+    luma.clear();
+    for (Probe const& probe : others) {
+        luma.push_back(rough(probe.position.x, probe.position.y).luma);
+    }
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, others, {luma, light}, 16))) << "off the middle light may be another";
+    light.assign(probes.size(), {0, 0});
+    EXPECT_FALSE(mirror.mark(find_stale(mirror, probes, {luma, light}, 16))) << "where nothing is known";
+}
+
 TEST(Mirror, CellsThatPiecesShareAreProbedToo) {
     // Each of the finest framelets has two layers, whose pieces cover half a cell each.
     auto const steps = [](float, float y) { return Seen{std::fmod(y, 4.0f) < 2 ? 10.0f : 7.0f}; };
@@ -80,10 +119,10 @@ TEST(Mirror, CellsThatPiecesShareAreProbedToo) {
     mirror.add(view_at(Vec3(0)).rays, no_motions, render_pieces(plane, plane.pixel_depth() + 2, steps));
     mirror.look(view_at(Vec3(0), 1), no_motions);
     std::vector<Probe> probes;
-    list_probes(mirror, cell_grid(cell_side, 16, 0), probes);
+    list_probes(mirror, cell_grid(cell_side, 16, 0), false, probes);
     ASSERT_EQ(probes.size(), std::size_t{viewport.width / 16 * (viewport.height / 16)});
     std::vector<float> const dark(probes.size(), 0.1f);
-    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, dark, 16)));
+    EXPECT_TRUE(mirror.mark(find_stale(mirror, probes, {dark}, 16)));
 }
 
 TEST(RayGrid, EveryCellHasItsTurn) {

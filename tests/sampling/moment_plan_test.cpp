@@ -1,5 +1,6 @@
 #include "server/sampling/plan/moment/moment_plan.h"
 
+#include <random>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -85,6 +86,40 @@ TEST(MomentPlan, UsesItsBudgetAndCoversWhatIsEmpty) {
     }
 }
 
+TEST(MomentPlan, WhatHasNotChangedIsRatedAsItWas) {
+    Planner planner;
+    std::minstd_rand random(1);
+    MirrorView view = view_at(0);
+    planner.mirror.look(view, no_motions);
+    planner.mirror.add(view.rays, no_motions, render_pieces(plane, plane.pixel_depth() - 2, half_busy));
+    for (int step = 0; step < 60; ++step) {
+        if (step % 15 == 14) {
+            view.scene_time += 0.1;
+            planner.mirror.look(view, no_motions);
+        }
+        if (step % 3 == 1) {
+            CellFault const fault{{static_cast<float>(random() % 250), static_cast<float>(random() % 130)}, 16, true};
+            planner.mirror.mark(std::span(&fault, 1));
+        }
+        MomentBudget budget{0.05 * viewport.width * viewport.height, {}, 0, 0};
+        budget.rests = true; // the picture's mean detail, which is kept for longer, counts for nothing
+        budget.bias = step < 30 ? 0 : 0.5f;
+        planner.find(budget);
+        auto const rated = planner.rated;
+        MomentPlan().find(planner.mirror, planner.regions, budget, planner.rated);
+        ASSERT_EQ(rated.size(), planner.rated.size()) << step;
+        for (std::size_t i = 0; i < rated.size(); ++i) {
+            EXPECT_EQ(rated[i].patch.node.code, planner.rated[i].patch.node.code) << step;
+            EXPECT_EQ(rated[i].patch.depth, planner.rated[i].patch.depth) << step;
+            EXPECT_EQ(rated[i].urgency, planner.rated[i].urgency) << step;
+        }
+        if (!rated.empty() && step % 4 == 2) { // some is taken, which is rendered later, or never
+            planner.regions.take(rated.front().patch, step, single_ray);
+        }
+        planner.render(view, half_busy);
+    }
+}
+
 TEST(MomentPlan, TheBusyHalfGetsTheFinerSamples) {
     Planner planner;
     planner.mirror.look(view_at(0), no_motions);
@@ -124,9 +159,9 @@ TEST(MomentPlan, WhatHasChangedIsRenderedCoarselyFirst) {
     planner.mirror.look(later, no_motions);
     double const refined = planner.find(samples);
     std::vector<Probe> probes;
-    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), probes);
+    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), false, probes);
     planner.mirror.mark(
-        find_stale(planner.mirror, probes, std::vector<float>(probes.size(), 0.0f), 16)); // the light is out
+        find_stale(planner.mirror, probes, {std::vector<float>(probes.size(), 0.0f)}, 16)); // the light is out
     for (float const bias : {-1.0f, 1.0f}) { // how much of the error is stale is no matter of wishes
         EXPECT_LT(planner.find(MomentBudget{samples, {}, {}, 0, 0.25 * samples, 1, bias}), 0.5 * samples) << bias;
     }
@@ -207,8 +242,8 @@ TEST(MomentPlan, WhatIsStaleIsRenderedAsFineAsWhatItHasToReplace) {
     planner.mirror.look(later, no_motions);
     ASSERT_FALSE(planner.mirror.gives_way(planner.mirror.cell(20, 10)));
     std::vector<Probe> probes;
-    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), probes);
-    planner.mirror.mark(find_stale(planner.mirror, probes, std::vector<float>(probes.size(), 0.0f), 16));
+    list_probes(planner.mirror, cell_grid(cell_side, 16, 0), false, probes);
+    planner.mirror.mark(find_stale(planner.mirror, probes, {std::vector<float>(probes.size(), 0.0f)}, 16));
     ASSERT_GT(planner.mirror.cell(20, 10).stale, 0);
     planner.find(0.25 * viewport.width * viewport.height);
     int inside = 0;

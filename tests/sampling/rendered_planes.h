@@ -17,6 +17,7 @@ struct Seen {
     float depth = 10; ///< metres
     float luma = 0.5f; ///< display-encoded, [0, 1]
     BodyNumber body = static_body;
+    float light = 0; ///< as of `Framelet::light`
 };
 using Look = std::function<Seen(float x, float y)>;
 
@@ -33,6 +34,7 @@ inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& 
     out.rendered.green.fill(0);
     out.rendered.blue.fill(0);
     out.rendered.body.resize(framelet_samples);
+    out.rendered.light.resize(framelet_samples);
     PixelRect const rect = plane.tile_rect(tile);
     float const spacing = plane.sample_spacing(tile);
     for (std::uint32_t i = 0; i < framelet_samples; ++i) {
@@ -40,6 +42,7 @@ inline RenderedTile render_tile(ImagePlane const& plane, Tile tile, Look const& 
                                static_cast<float>(rect.top) + (static_cast<float>(morton_y(i)) + 0.5f) * spacing);
         out.rendered.depth[i] = seen.depth;
         out.rendered.body[i] = seen.body;
+        out.rendered.light[i] = seen.light;
         out.shown.red[i] = out.shown.green[i] = out.shown.blue[i] =
             static_cast<std::uint8_t>(std::lround(255 * seen.luma));
     }

@@ -137,7 +137,7 @@ private:
                 errors.push_back(error_of_paths(tile, rendered_plan_.rays_per_sample));
             }
         }
-        auto const& send = refresh.learn(rendered_plan_, display_, rendered_, luma_, errors);
+        auto const& send = refresh.learn(rendered_plan_, display_, rendered_, {luma_}, errors);
         for (std::size_t i = 0; i < display_.size(); ++i) {
             if (send[i] != 0) {
                 sent.push_back(display_[i]);

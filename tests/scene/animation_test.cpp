@@ -105,6 +105,29 @@ TEST(Animation, ClipsLoopEachWithItsOwnDuration) {
     EXPECT_EQ(Vec3(evaluate_pose(scene, clips, 6000001).world_from_node[0][3]), Vec3(1, 0, 0)) << "exact after weeks";
 }
 
+TEST(Animation, OneMomentAfterAnotherIsPosedAsEachAlone) {
+    Scene scene = two_nodes();
+    scene.nodes.resize(5);
+    scene.nodes[1].local.translation = {0, 5, 0};
+    scene.nodes[2].local.translation = {0, 0, 7}; // nothing moves it
+    scene.nodes[3].parent = 1; // moves with what is around it
+    scene.nodes[3].local.scale = Vec3(2);
+    scene.nodes[4].parent = 2;
+    scene.meshes.resize(1);
+    scene.meshes[0].morph_weights = {0.5f};
+    scene.nodes[4].mesh = 0;
+    scene.clips[0].channels.push_back({4, AnimatedProperty::morph_weights, Interpolation::linear, 1, {0, 2}, {0, 1}});
+    auto const clips = default_clips(scene);
+    PoseEvaluator poses(scene, clips);
+    for (double const time : {0.5, 2.75, 0.5, 1e6, 0.0, 1.999}) {
+        ScenePose const& pose = poses.at(time);
+        ScenePose const alone = evaluate_pose(scene, clips, time);
+        EXPECT_EQ(pose.time, time);
+        EXPECT_EQ(pose.world_from_node, alone.world_from_node) << time;
+        EXPECT_EQ(pose.morph_weights, alone.morph_weights) << time;
+    }
+}
+
 TEST(Animation, MovingNodesIncludeDescendants) {
     Scene scene = two_nodes();
     EXPECT_EQ(moving_nodes(scene, std::vector<Index>{0}), (std::vector<bool>{true, true}));

@@ -27,7 +27,8 @@ void fail(std::string const& problem) {
 
 TEST(EventLog, GivesBackWhatWasAdded) {
     TemporaryFile const file;
-    ServedScene const served{{"a scene", "another"}, "", {1, 2}, {LightMethod::reference, 0.1f, 0.7f}, 0.1f, -0.5, 7};
+    ServedScene const served{{"a scene", "another"}, "",   {1, 2}, {LightMethod::reference, 0.1f, 0.7f}, 0.1f,
+                             ToneCurve::agx,         -0.5, 7};
     CameraUpdate camera;
     camera.view = {3, {}, {64, 48}};
     EncodedBatch batch;
@@ -56,6 +57,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     EXPECT_EQ(reader.served().clips, served.clips);
     EXPECT_EQ(reader.served().light, served.light);
     EXPECT_EQ(reader.served().exposure, served.exposure);
+    EXPECT_EQ(reader.served().tone_curve, served.tone_curve);
     EXPECT_EQ(reader.served().bias, served.bias);
     EXPECT_EQ(reader.served().batch_framelets, served.batch_framelets);
     auto const next = [&] {

@@ -128,8 +128,8 @@ TEST(MomentChoice, AnotherSizeOrExposureBeginsAnew) {
     double now = 3.001;
     choose(moments, state_at(1), now);
     ViewState other = state_at(1.001);
-    other.exposure = 2;
-    EXPECT_EQ(choose(moments, other, now += 0.001)->state.exposure, 2);
+    other.transform.exposure = 2;
+    EXPECT_EQ(choose(moments, other, now += 0.001)->state.transform.exposure, 2);
     other.view.viewport = {32, 32};
     EXPECT_EQ(choose(moments, other, now += 0.001)->state.view.viewport, other.view.viewport);
     moments.forget();

@@ -1,4 +1,4 @@
-// Streams whose light is found by paths (`--light reference`).
+// Streams whose light is found by paths in the end (`--light reference`, `full`).
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace framelet {
 namespace {
 
 constexpr Viewport viewport{64, 48};
-LightOptions const by_paths{LightMethod::reference, 0.53f, 0.1f};
+LightOptions const by_paths{LightMethod::reference, 0.53f, 0.1f}, by_cache{LightMethod::full, 0.53f, 0.1f};
 
 /// A triangle on a floor, under a lamp.
 Scene lit_scene() {
@@ -38,7 +38,8 @@ Scene lit_scene() {
 
 class PathViewer {
 public:
-    explicit PathViewer(double samples_per_second = 4e5) : samples_per_second_(samples_per_second) {
+    explicit PathViewer(LightOptions const& by = by_paths, double samples_per_second = 4e5)
+        : light(by), samples_per_second_(samples_per_second) {
         stream_.take({now_, ViewerSettings{}});
     }
 
@@ -72,9 +73,10 @@ public:
         return stream_.is_complete();
     }
 
+    LightOptions const light;
     Scene const scene = lit_scene();
     RenderScene render_scene{scene, Environment::uniform(Vec3(0.05f))};
-    PosedScene posed{scene, {0}, render_scene, by_paths};
+    PosedScene posed{scene, {0}, render_scene, light};
     Picture picture{viewport.width, viewport.height}; ///< of the samples that came last, one a pixel
     std::uint64_t paths = 0, bytes = 0, batches = 0;
 
@@ -133,7 +135,7 @@ TEST(PathStream, AtRestAllViewersHaveTheSameBytes) {
     ASSERT_TRUE(fresh.finish(0.5));
     for (std::size_t const threads : {1u, 2u}) {
         tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
-        PathViewer flying(3e4);
+        PathViewer flying(by_paths, 3e4);
         for (int i = 0; i < 40; ++i) {
             Camera moved = camera;
             moved.position.x += 0.05f * static_cast<float>(40 - i);
@@ -153,6 +155,37 @@ TEST(PathStream, AtRestAllViewersHaveTheSameBytes) {
         ASSERT_TRUE(flying.finish(0.5));
         EXPECT_EQ(flying.picture.rgba, fresh.picture.rgba) << threads << " threads";
     }
+}
+
+double root_mean_square(Picture const& a, Picture const& b) {
+    double squares = 0;
+    for (std::size_t i = 0; i < a.rgba.size(); ++i) {
+        double const off = static_cast<double>(a.rgba[i]) - static_cast<double>(b.rgba[i]);
+        squares += off * off / static_cast<double>(a.rgba.size());
+    }
+    return std::sqrt(squares);
+}
+
+TEST(PathStream, LightOfTheCacheIsSmoothAtOnceAndThatOfThePathsInTheEnd) {
+    PathViewer paths;
+    paths.look({});
+    ASSERT_TRUE(paths.finish());
+    PathViewer viewer(by_cache, 3e4);
+    for (int i = 0; i < 40; ++i) {
+        Camera moved;
+        moved.position.x += 0.05f * static_cast<float>(40 - i);
+        viewer.look(moved);
+        viewer.turn(0.01 * i, 1);
+    }
+    viewer.look({});
+    viewer.cut();
+    for (int i = 0; i < 60; ++i) {
+        viewer.turn();
+    }
+    EXPECT_LT(root_mean_square(viewer.picture, paths.picture), 4);
+    ASSERT_TRUE(viewer.finish());
+    EXPECT_EQ(viewer.picture.rgba, paths.picture.rgba);
+    EXPECT_EQ(viewer.turn(), Step::nothing);
 }
 
 TEST(PathStream, WhileAnythingMovesItGoesOnFromMomentToMoment) {

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 #include <nlohmann/json.hpp>
 
+#include "client/core/camera/camera_text.h"
 #include "common/error.h"
 #include "common/files/regular_file.h"
 
@@ -248,6 +249,9 @@ CameraPath parse_camera_path(std::string const& json, std::string const& name) {
 }
 
 CameraPath read_camera_path(std::filesystem::path const& file) {
+    if (auto const text = camera_in_address(file.native())) {
+        return parse_camera_path(*text, "of the address");
+    }
     RegularFile const opened(file);
     std::ifstream in(opened.name(), std::ios::binary);
     std::string text;

@@ -52,7 +52,8 @@ struct CameraPath {
 /// where it is of a moment. Throws InputError; `name` is for its message.
 CameraPath parse_camera_path(std::string const& json, std::string const& name);
 
-/// Reads a file and parses it likewise. Throws InputError, also where the file cannot be read.
+/// Reads a file and parses it likewise, or what an address of the web page has behind #camera=. Throws InputError, also
+/// where the file cannot be read.
 CameraPath read_camera_path(std::filesystem::path const& file);
 
 } // namespace framelet

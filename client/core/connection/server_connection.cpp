@@ -387,6 +387,10 @@ void ServerConnection::send(Message const& message) {
     impl_->open_stream()->send(message);
 }
 
+void ServerConnection::acknowledge(Ack const& ack) {
+    send(ack);
+}
+
 bool ServerConnection::all_sent() const {
     return impl_->open_stream()->unsent_bytes() == 0;
 }

@@ -46,6 +46,8 @@ public:
     Welcome const& welcome() const;
     /// Sends a message; does nothing while no session is open. May be called from any thread.
     void send(Message const& message);
+    /// Answers a batch that has been decoded. As `send`, but a web page has answered each when it arrived.
+    void acknowledge(Ack const& ack);
     /// True when everything that was queued has been taken by the network. May be called from any thread.
     bool all_sent() const;
 

@@ -170,7 +170,9 @@ bool PictureMaker::show(PictureRequest const& request, Picture& picture, std::ve
         picture.rgba.data() != shown_pixels_ || picture.width != size.width || picture.height != size.height;
     pool_.newest().take_changed(changed);
     if (whole) {
-        picture = Picture(size.width, size.height);
+        if (picture.width != size.width || picture.height != size.height) {
+            picture = Picture(size.width, size.height);
+        }
         reprojector_ = Reprojector(settings_.parts);
         if (smoother_) {
             smoother_->start_picture();

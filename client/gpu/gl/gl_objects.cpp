@@ -136,6 +136,16 @@ GlTarget::GlTarget(std::initializer_list<GlPlane const*> planes, GlCount& count)
     }
 }
 
+void show_on_screen(GlTarget const& target) {
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, target.get());
+    glReadBuffer(GL_COLOR_ATTACHMENT0);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    int const width = target.width();
+    int const height = target.height();
+    glBlitFramebuffer(0, 0, width, height, 0, height, width, 0, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+    glBindFramebuffer(GL_FRAMEBUFFER, 0);
+}
+
 void forget_errors() {
     constexpr int most = 16; // a context that is lost says so for ever
     for (int i = 0; i < most && glGetError() != GL_NO_ERROR; ++i) {

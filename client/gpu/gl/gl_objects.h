@@ -91,6 +91,9 @@ private:
     int width_ = 0, height_ = 0;
 };
 
+/// Copies a target's first plane to the framebuffer of the context, which has the same size, rows from the top.
+void show_on_screen(GlTarget const& target);
+
 /// Clears OpenGL's errors: what others have done wrong is not to be taken for ours.
 void forget_errors();
 /// Throws CanvasError where OpenGL says that memory is missing, or that a call was wrong.

@@ -12,7 +12,13 @@ namespace framelet {
 
 namespace {
 
+#ifdef __EMSCRIPTEN__
+constexpr char const* version = "#version 300 es\n"
+                                "precision highp float; precision highp int; precision highp sampler2D;\n"
+                                "precision highp usampler2D; precision highp usampler2DArray;\n";
+#else
 constexpr char const* version = "#version 330 core\n";
+#endif
 
 void attach(GLuint program, GLenum kind, std::initializer_list<char const*> texts) {
     std::vector<char const*> all{version};

@@ -1,4 +1,4 @@
-// The user's own views in a scene, by name. In: cameras. Out: a file of camera files, and back.
+// The user's own views in a scene, kept in a file. In: cameras. Out: that file, as `bookmarks_text`, and back.
 #pragma once
 
 #include <cstdint>
@@ -6,21 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "client/core/camera/camera_path.h"
+#include "client/viewer/bookmark_list.h"
 #include "common/camera.h"
 
 namespace framelet {
-
-struct Bookmark {
-    std::string name;
-    Camera camera;
-    bool operator==(Bookmark const&) const = default;
-};
-
-/// The camera, and the moment that it is of, as --camera reads them, with a line's end; `origin` of the scene as in
-/// Welcome.
-std::string camera_file_text(Camera const& camera, CameraMoment const& moment,
-                             glm::dvec3 const& origin = glm::dvec3(0));
 
 /// Files of a scene's bookmarks; empty: there is none.
 struct BookmarkFiles {
@@ -34,8 +23,6 @@ BookmarkFiles bookmark_files(std::string const& scene_name, std::uint64_t scene_
 /// The bookmarks of one scene, kept in a file.
 class Bookmarks {
 public:
-    static constexpr std::size_t most = 1000;
-
     /// Reads the file or, where there is none, the older one, which is never written. Where that cannot be used there
     /// are none, and `complaint` is one line. Files hold positions as the scene's file has them, `all` has them from
     /// its `origin`.

@@ -5,8 +5,8 @@
 #include <cstdio>
 #include <utility>
 
-#include "client/window/overlay/commands.h"
-#include "client/window/overlay/lacks.h"
+#include "client/viewer/commands.h"
+#include "client/viewer/lacks.h"
 #include "client/window/overlay/overlay_text.h"
 
 namespace framelet {

@@ -7,8 +7,9 @@
 #include <vector>
 
 #include "client/core/drawn_over/drawn_over.h"
+#include "client/viewer/commands.h"
+#include "client/viewer/legend.h"
 #include "client/window/named_server.h"
-#include "client/window/overlay/commands.h"
 #include "client/window/overlay/time_line.h"
 
 namespace framelet {
@@ -28,15 +29,6 @@ struct StatisticsPanel {
     bool shows_details = false;
     TextRows details;
     bool operator==(StatisticsPanel const&) const = default;
-};
-
-/// The meaning of the colours of what is drawn over the picture.
-struct Legend {
-    std::string title;
-    std::string newest, oldest; ///< texts at both ends of the colours; empty: it has one colour
-    std::string remark;
-    std::string tip;
-    bool operator==(Legend const&) const = default;
 };
 
 /// The name of the view that is neither a camera of the scene nor a bookmark.

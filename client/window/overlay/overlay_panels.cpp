@@ -5,7 +5,7 @@
 
 #include "client/core/connection/server_address.h"
 #include "client/core/drawn_over/age_colors.h"
-#include "client/window/overlay/commands.h"
+#include "client/viewer/commands.h"
 #include "client/window/overlay/overlay_text.h"
 
 namespace framelet {

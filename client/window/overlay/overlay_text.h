@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,10 +62,6 @@ TextRows detail_rows(ClientStatistics const& statistics, RateMeter const& meter,
                      std::string const& painter);
 /// Says what the figure of this name is, for its tooltip: one of a plot or of either kind of rows.
 std::string figure_tip(std::string const& name);
-/// Says what this kind of overlay shows, for its tooltip.
-std::string overlay_tip(DrawnOver drawn);
-/// The legend of what is drawn over the picture; nothing where it needs none.
-std::optional<Legend> legend_of(DrawnOver drawn);
 /// A text about a scene that is being opened, and the stage that this has reached; empty where there is no scene.
 std::string opening_text(std::string const& scene, std::string const& stage);
 /// What the small sign at the upper edge says, a line each.

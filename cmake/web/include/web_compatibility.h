@@ -54,6 +54,14 @@ template <class Range, class Value>
 void fill(Range&& range, Value const& value) {
     std::fill(std::begin(range), std::end(range), value);
 }
+template <class Range, class Out>
+Out copy(Range&& range, Out out) {
+    return std::copy(std::begin(range), std::end(range), out);
+}
+template <class Range, class Test>
+auto count_if(Range&& range, Test const& test) {
+    return std::count_if(std::begin(range), std::end(range), test);
+}
 template <class Range, class Value, class Member = std::identity>
 auto find(Range&& range, Value const& value, Member const& member = {}) {
     return std::find_if(std::begin(range), std::end(range),

@@ -1,11 +1,13 @@
 // The metallic-roughness BRDF of [glTF 2.0] appendix B: GGX distribution ([Walter 2007]), height-correlated Smith
-// visibility, Fresnel term of [Schlick 1994], Lambertian diffuse. Written over sixteen lanes.
+// visibility, Fresnel term of [Schlick 1994], Lambertian diffuse. Written over sixteen lanes. What single reflection
+// loses on rough surfaces comes back diffusely, of lamps as of the surroundings, as paths have it (`path/scattering`).
 #pragma once
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
+#include "server/render/light/split_sum.h"
 #include "server/render/packet.h"
 
 namespace framelet {
@@ -14,6 +16,7 @@ namespace framelet {
 struct LobePacket {
     LaneVec3 diffuse; ///< albedo of the diffuse part
     LaneVec3 f0; ///< reflectance at normal incidence
+    LaneVec3 specular; ///< the share of uniform light that the lobe reflects, set by `share_out`
     LaneFloats alpha2; ///< (perceptual roughness)^4
     LaneFloats normal_view; ///< cosine, > 0
 };
@@ -38,6 +41,17 @@ inline void make_lobes(LaneVec3 const& base, LaneFloats const& metallic, LaneFlo
         float const cosine = normal.x[i] * view.x[i] + normal.y[i] * view.y[i] + normal.z[i] * view.z[i];
         out.normal_view[i] = cosine > 1e-3f ? cosine : 1e-3f;
     }
+}
+
+/// Lets the lobe take its share of what arrives, of these lanes: `diffuse` becomes what is reflected diffusely beside
+/// it.
+inline void share_out(SplitSumTable const& split_sum, LaneFloats const& roughness, LaneMask lit, LobePacket& lobes) {
+    for_each_lane(lit, [&](int i) {
+        AmbientShares const shares =
+            ambient_shares(split_sum.at(lobes.normal_view[i], roughness[i]), lobes.f0.get(i), lobes.diffuse.get(i));
+        lobes.diffuse.set(i, shares.diffuse);
+        lobes.specular.set(i, shares.specular);
+    });
 }
 
 /// Adds what the surface reflects towards `view` of light that arrives along `to_light` (unit) with the given
@@ -68,7 +82,7 @@ inline void add_reflected(LobePacket const& lobes, LaneVec3 const& normal, LaneV
         float const fresnel = (away * away) * (away * away) * away;
         auto add = [&](float f0, float diffuse, float arriving, float& sum) {
             float const f = f0 + (1 - f0) * fresnel;
-            sum += ((1 - f) * diffuse * inverse_pi + f * specular) * arriving;
+            sum += (diffuse * inverse_pi + f * specular) * arriving;
         };
         add(lobes.f0.x[i], lobes.diffuse.x[i], irradiance.x[i], radiance.x[i]);
         add(lobes.f0.y[i], lobes.diffuse.y[i], irradiance.y[i], radiance.y[i]);

@@ -30,6 +30,8 @@ public:
 
     /// Radiance seen by a ray that hits nothing; `footprint` is its angular width in radians (picks the level).
     Vec3 background(Vec3 direction, float footprint) const;
+    /// Part of its radiance that `diffuse` and `specular` are of.
+    float light_share() const { return light_share_; }
     /// Irradiance / pi about a unit normal: what a white Lambertian surface reflects.
     Vec3 diffuse(Vec3 normal) const;
     /// Radiance averaged over the GGX lobe of this perceptual roughness about a unit mirror direction.

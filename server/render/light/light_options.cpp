@@ -8,10 +8,13 @@ LightMethod parse_light_method(std::string const& word) {
     if (word == "direct") {
         return LightMethod::direct;
     }
+    if (word == "full") {
+        return LightMethod::full;
+    }
     if (word == "reference") {
         return LightMethod::reference;
     }
-    throw InputError("light is direct or reference, not '" + word + "'");
+    throw InputError("light is direct, full or reference, not '" + word + "'");
 }
 
 } // namespace framelet

@@ -9,7 +9,8 @@ namespace framelet {
 
 enum class LightMethod : std::uint8_t {
     direct, ///< of lights and environment, with shadows of lights, and mirror reflections
-    reference ///< all of it, by paths: exact, noisy while anything moves
+    reference, ///< all of it, by paths: exact, noisy while anything moves
+    full ///< all of it, by the light cache: smooth while anything moves, and by paths in the end where nothing does
 };
 
 /// The method that a word stands for. Throws InputError for other words.

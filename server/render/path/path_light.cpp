@@ -51,8 +51,8 @@ void trace_pass(PathLight const& light, ViewRays const& view, ImagePlane const& 
 }
 
 /// Luminance as a viewer sees it, without rounding, [0, 1].
-float shown_luminance(Vec3 const& radiance) {
-    return srgb_from_linear(luminance(tone_map(radiance)));
+float shown_luminance(Vec3 const& radiance, DisplayTransform const& transform) {
+    return srgb_from_linear(luminance(transform.shown(radiance)));
 }
 
 } // namespace
@@ -66,9 +66,8 @@ LampSizes lamp_sizes(LightOptions const& light, Bounds const& bounds) {
     return sizes;
 }
 
-PathLight::PathLight(PreparedScene const& scene, LampSizes sizes) : scene_(std::make_unique<PathScene>(scene)) {
-    options_.sizes = sizes;
-}
+PathLight::PathLight(PreparedScene const& scene, PathOptions const& options)
+    : scene_(std::make_unique<PathScene>(scene)), options_(options) {}
 
 PathLight::~PathLight() = default;
 
@@ -126,7 +125,7 @@ void trace_more_paths(PathLight const& light, ViewRays const& view, ImagePlane c
     }
 }
 
-float squared_error(TileSums const& sums, float exposure) {
+float squared_error(TileSums const& sums, DisplayTransform const& transform) {
     if (sums.paths < telling_paths) {
         return INFINITY;
     }
@@ -138,8 +137,8 @@ float squared_error(TileSums const& sums, float exposure) {
         float const variance = std::max(sums.squares[i] / count - shade * shade, 0.0f) / (count - 1);
         if (variance > 0 && shade > 0) {
             float const share = std::sqrt(variance) / shade; // of the radiance, which is never below 0
-            float const above = shown_luminance(mean * (exposure * (1 + share)));
-            float const below = shown_luminance(mean * (exposure * std::max(1 - share, 0.0f)));
+            float const above = shown_luminance(mean * (1 + share), transform);
+            float const below = shown_luminance(mean * std::max(1 - share, 0.0f), transform);
             sum += 0.25f * (above - below) * (above - below);
         }
     }

@@ -9,6 +9,7 @@
 #include <memory>
 #include <vector>
 
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 #include "server/render/light/light_options.h"
 #include "server/render/path/path_options.h"
@@ -24,7 +25,7 @@ LampSizes lamp_sizes(LightOptions const& light, Bounds const& bounds);
 class PathLight {
 public:
     /// `scene` must outlive this, and stay where it is.
-    PathLight(PreparedScene const& scene, LampSizes sizes);
+    PathLight(PreparedScene const& scene, PathOptions const& options);
     ~PathLight();
     PathLight(PathLight const&) = delete;
     PathLight& operator=(PathLight const&) = delete;
@@ -74,6 +75,6 @@ void trace_more_paths(PathLight const& light, ViewRays const& view, ImagePlane c
 
 /// Mean squared standard error of a sample of the tile, as luminance in the display's encoding, [0, 1]. `exposure`
 /// multiplies radiance. Infinite for fewer paths than tell.
-float squared_error(TileSums const& sums, float exposure);
+float squared_error(TileSums const& sums, DisplayTransform const& transform);
 
 } // namespace framelet

@@ -3,13 +3,9 @@
 
 #include <cstdint>
 
-namespace framelet {
+#include "server/render/light/lamp_sizes.h"
 
-/// Sizes of lights that a scene file does not tell. 0: hard.
-struct LampSizes {
-    float sun = 0; ///< angular radius of directional lights, radians
-    float lamp = 0; ///< radius of point and spot lights, metres
-};
+namespace framelet {
 
 /// By which rays light with a size (lamps, emissive triangles, environment) is found. All agree in the mean.
 enum class LightRays { both, to_lights, by_surface };

@@ -57,10 +57,10 @@ FloatImage render_paths(RenderScene const& scene, Camera const& camera, Viewport
     return picture;
 }
 
-Picture to_display(FloatImage const& radiance, float exposure) {
+Picture to_display(FloatImage const& radiance, DisplayTransform const& transform) {
     Picture picture(radiance.width, radiance.height);
     for (std::size_t i = 0; i < radiance.rgb.size(); ++i) {
-        Vec3 const shown = tone_map(radiance.rgb[i] * exposure);
+        Vec3 const shown = transform.shown(radiance.rgb[i]);
         for (std::size_t c = 0; c < 3; ++c) {
             picture.rgba[i * 4 + c] = srgb_byte_from_linear(shown[static_cast<int>(c)]);
         }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/camera.h"
+#include "common/color.h"
 #include "common/image.h"
 #include "server/render/path/path_options.h"
 #include "server/render/prepared/render_scene.h"
@@ -13,6 +14,6 @@ namespace framelet {
 FloatImage render_paths(RenderScene const& scene, Camera const& camera, Viewport viewport, PathOptions const& options);
 
 /// The picture as a viewer shows it: each pixel's mean radiance tone-mapped and encoded.
-Picture to_display(FloatImage const& radiance, float exposure);
+Picture to_display(FloatImage const& radiance, DisplayTransform const& transform);
 
 } // namespace framelet

@@ -43,4 +43,18 @@ struct PathNumbers {
 void trace_paths(PathScene const& scene, PathOptions const& options, RayPacket& rays, LaneMask active,
                  Footprint footprint, PathNumbers const& numbers, LaneVec3& radiance);
 
+/// What arrives at places of surfaces from all around, but straight from punctual lights: one path of each lane.
+struct GatheredLanes {
+    LaneVec3 all; ///< irradiance / pi
+    LaneVec3 reflected; ///< the part of `all` that comes from surfaces
+    LaneVec3 lean; ///< luminance * unit direction, world
+    LaneFloats open; ///< 1: the first ray has met nothing
+    LaneFloats nearness; ///< 1 / metres to what it has met, else 0
+};
+
+/// Gathers light at places (world; a little off their surface) about unit normals. `footprint` is that of the rays that
+/// leave them.
+void gather_light(PathScene const& scene, PathOptions const& options, LaneVec3 const& position, LaneVec3 const& normal,
+                  LaneMask active, Footprint footprint, PathNumbers const& numbers, GatheredLanes& out);
+
 } // namespace framelet

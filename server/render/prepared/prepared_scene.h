@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "server/render/light/environment.h"
+#include "server/render/light/lamp_sizes.h"
 #include "server/render/light/light.h"
 #include "server/render/light/split_sum.h"
 #include "server/render/surface/embree_scene.h"
@@ -25,6 +26,8 @@ inline constexpr float motion_step = 0.05f;
 inline constexpr std::array<float, motion_times> motion_seconds{-motion_step, motion_step, 2 * motion_step,
                                                                 6 * motion_step};
 
+class LightCache;
+
 struct PreparedScene {
     MaterialLibrary library;
     std::vector<std::vector<Geometry>> meshes; ///< by BVH number; the BVH points at the elements
@@ -34,6 +37,8 @@ struct PreparedScene {
     MotionTimes times; ///< what is known of how things move
     Environment environment = Environment::uniform(Vec3(0));
     SplitSumTable split_sum;
+    LightCache* light_cache = nullptr; ///< says what arrives from all around; null: the environment, unshadowed
+    LampSizes lamp_sizes; ///< of `lights`
     bool moves = false; ///< something moves: tracing keeps which surface gives a sample its depth
     bool throws_moving_shadows = false; ///< something moves so fast that its shadow does not stay
     bool see_through = false; ///< some material lets rays pass: without, no ray is ever continued behind a surface

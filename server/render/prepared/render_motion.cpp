@@ -43,6 +43,7 @@ WorldPlacement placement_of(BodyPose const& pose) {
 
 void RenderScene::set_clips(std::span<Index const> clips) {
     clips_.assign(clips.begin(), clips.end());
+    other_poses_.emplace(scene_, clips_);
     bodies_ = find_bodies(scene_, clips_);
     switches_ = find_switches(scene_, clips_);
     prepared_->moves = bodies_.any_moves() || bodies_.any_flows();
@@ -81,7 +82,7 @@ void RenderScene::update_motion() {
     for (std::size_t k = 0; k < motion_times; ++k) {
         SceneTime const time = pose_.time + static_cast<double>(motion_seconds[k]);
         times.usable[k] = !switches_within(switches_, std::min(time, pose_.time), std::max(time, pose_.time)).any;
-        ScenePose const other = evaluate_pose(scene_, clips_, time);
+        ScenePose const& other = other_poses_->at(time);
         move_bodies(k, other);
         times.lights[k].clear();
         for (Light const& light : scene_.lights) {

@@ -129,6 +129,11 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
 
 RenderScene::~RenderScene() = default;
 
+void RenderScene::set_light(LightCache* cache, LampSizes sizes) {
+    prepared_->light_cache = cache;
+    prepared_->lamp_sizes = sizes;
+}
+
 void RenderScene::add_meshes(Progress const& progress) {
     std::map<Index, std::uint32_t> shared;
     double const all = static_cast<double>(std::max<std::size_t>(triangles_to_build(scene_), 1));

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "server/render/light/environment.h"
+#include "server/render/light/lamp_sizes.h"
 #include "server/render/surface/geometry.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
@@ -15,6 +16,7 @@
 
 namespace framelet {
 
+class LightCache;
 struct PreparedScene;
 
 class RenderScene {
@@ -38,6 +40,10 @@ public:
     /// Not to be called while anything renders. At first nothing plays: everything is static.
     void set_clips(std::span<Index const> clips);
     SceneBodies const& bodies() const { return bodies_; }
+
+    /// From now on light from all around is of this cache, which must outlive all rendering; null: of the environment.
+    /// Punctual lights have these sizes.
+    void set_light(LightCache* cache, LampSizes sizes);
 
     PreparedScene const& prepared() const { return *prepared_; }
 
@@ -75,6 +81,7 @@ private:
     bool is_built_ = true; ///< every BVH is there
     bool is_placed_ = false; ///< everything stands as `pose_` says
     std::vector<Index> clips_;
+    std::optional<PoseEvaluator> other_poses_; ///< of `clips_`
     SceneBodies bodies_;
     std::vector<ClipSwitches> switches_; ///< of `clips_`
     /// By deforming mesh and primitive: where its vertices are in the world at other times, and the bodies of its

@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "server/render/light/luminance.h"
+#include "server/render/trace/lamp_shadows.h"
 
 namespace framelet {
 namespace {
@@ -24,34 +25,24 @@ float smooth_step(float from, float to, float x) {
     return t * t * (3 - 2 * t);
 }
 
-Vec3 mirrored(SurfacePacket const& s, int i) {
-    Vec3 const n = s.normal.get(i);
-    Vec3 const v = s.view.get(i);
-    return n * (2 * glm::dot(n, v)) - v;
-}
-
-void add_environment(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                     bool may_reflect, MirrorRays& mirror, LaneVec3& radiance) {
+void add_surroundings(SurfacePacket const& s, SurroundingLight const& around, LobePacket const& lobes, LaneMask lit,
+                      bool may_reflect, MirrorRays& mirror, LaneVec3& radiance) {
     mirror.lanes = 0;
     for_each_lane(lit, [&](int i) {
         float const roughness = s.roughness[i];
-        AmbientShares const shares =
-            ambient_shares(scene.split_sum.at(lobes.normal_view[i], roughness), lobes.f0.get(i), lobes.diffuse.get(i));
-        Vec3 const irradiance = scene.environment.diffuse(s.normal.get(i));
-        Vec3 const filtered = scene.environment.specular(mirrored(s, i), roughness);
-        Vec3 const diffuse_part = shares.diffuse * irradiance * s.occlusion[i];
-        Vec3 const specular = shares.specular * s.occlusion[i];
+        Vec3 const specular = lobes.specular.get(i);
         float traced = 0;
         if (may_reflect && roughness < filtered_roughness) {
-            float const strength = std::max({shares.specular.r, shares.specular.g, shares.specular.b});
+            float const strength = std::max({specular.r, specular.g, specular.b});
             traced = (1 - smooth_step(traced_roughness, filtered_roughness, roughness)) *
                      smooth_step(negligible_reflectance, full_reflectance, strength);
         }
         if (traced > 0) {
             mirror.lanes |= 1u << i;
-            mirror.share.set(i, shares.specular * traced);
+            mirror.share.set(i, specular * traced);
         }
-        radiance.set(i, radiance.get(i) + diffuse_part + specular * filtered * (1 - traced));
+        radiance.set(i, radiance.get(i) + lobes.diffuse.get(i) * around.diffuse.get(i) +
+                            specular * around.specular.get(i) * (1 - traced));
     });
 }
 
@@ -98,26 +89,17 @@ struct StrongestLight {
 
 /// Adds what the surface reflects of punctual lights. Returns how many rays that took.
 std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                         StrongestLight& strongest, LaneVec3& radiance) {
+                         bool is_plane, StrongestLight& strongest, LaneVec3& radiance) {
     std::uint32_t segments = 0;
     ArrivingLight arriving;
-    RayPacket shadow;
-    shadow.origin = s.leaving;
-    shadow.near.fill(0);
-    LaneVec3 irradiance, transmittance;
+    LaneVec3 irradiance, passed;
     for (std::uint32_t number = 0; number < scene.lights.size(); ++number) {
         RenderLight const& light = scene.lights[number];
         LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
         if (reached == 0) {
             continue;
         }
-        shadow.direction = arriving.to_light;
-        for (int i = 0; i < lanes; ++i) {
-            shadow.far[i] = arriving.distance[i] * shadow_ray_share;
-        }
-        transmittance.fill(Vec3(1));
-        segments += static_cast<std::uint32_t>(std::popcount(reached));
-        LaneMask const blocked = scene.bvh.occluded(shadow, reached, transmittance);
+        LaneMask const blocked = find_shadow(scene, light, s, arriving, reached, is_plane, passed, segments);
         if (scene.moves) {
             strongest.add(number, light, arriving, reached, blocked);
         }
@@ -127,9 +109,9 @@ std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, Lob
         }
         for (int i = 0; i < lanes; ++i) {
             float const arrives = (bright >> i & 1) != 0 ? arriving.irradiance[i] : 0.0f;
-            irradiance.x[i] = transmittance.x[i] * (light.intensity.r * arrives);
-            irradiance.y[i] = transmittance.y[i] * (light.intensity.g * arrives);
-            irradiance.z[i] = transmittance.z[i] * (light.intensity.b * arrives);
+            irradiance.x[i] = passed.x[i] * (light.intensity.r * arrives);
+            irradiance.y[i] = passed.y[i] * (light.intensity.g * arrives);
+            irradiance.z[i] = passed.z[i] * (light.intensity.b * arrives);
         }
         add_reflected(lobes, s.normal, s.view, arriving.to_light, irradiance, radiance);
     }
@@ -152,15 +134,16 @@ void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lob
 
 } // namespace
 
-void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, bool may_reflect,
-                        LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out) {
+void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, SurroundingLight const& around,
+                        LaneMask active, bool may_reflect, LobePacket& lobes, MirrorRays& mirror, ShadedPacket& out) {
     make_lobes(s.base_color, s.metallic, s.roughness, s.normal, s.view, lobes);
     if (scene.see_through) {
         split_transmission(s, active, lobes, out);
     }
+    share_out(scene.split_sum, s.roughness, active & ~s.unlit, lobes);
     out.radiance = s.emissive;
     out.segments = 0;
-    add_environment(scene, s, lobes, active & ~s.unlit, may_reflect, mirror, out.radiance);
+    add_surroundings(s, around, lobes, active & ~s.unlit, may_reflect, mirror, out.radiance);
     out.reflects = mirror.lanes;
     if (mirror.lanes != 0) {
         aim_reflections(s, mirror);
@@ -168,14 +151,14 @@ void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, Lane
 }
 
 void shade_lights(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, LobePacket const& lobes,
-                  ShadedPacket& out) {
+                  bool is_plane, ShadedPacket& out) {
     StrongestLight strongest;
     if (scene.moves) {
         strongest.reset();
     }
     LaneMask const lit = active & ~s.unlit;
     if (lit != 0) {
-        out.segments += add_lights(scene, s, lobes, lit, strongest, out.radiance);
+        out.segments += add_lights(scene, s, lobes, lit, is_plane, strongest, out.radiance);
     }
     if (scene.moves) {
         out.lost_light = strongest.lost;

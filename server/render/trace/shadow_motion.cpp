@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "server/render/surface/hit_frame.h"
+#include "server/render/trace/lamp_shadows.h"
 #include "server/render/trace/sample_motion.h"
 #include "server/render/trace/shading.h"
 

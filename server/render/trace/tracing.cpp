@@ -34,8 +34,14 @@ void add_background(PreparedScene const& scene, RayPacket const& rays, LaneMask 
         if (mean(through) > state.weight[i]) {
             out.depth[i] = INFINITY;
             out.surface.instance[i] = no_instance;
+            out.light[i] = out.light_share[i] = 0;
         }
     });
+}
+
+void keep_light(ShadedPacket const& shaded, int i, TracedPacket& out) {
+    out.light[i] = shaded.light[i];
+    out.light_share[i] = shaded.light_share[i];
 }
 
 void keep_surface(HitPacket const& hits, SurfacePacket const& surfaces, ShadedPacket const& shaded, int i,
@@ -59,6 +65,7 @@ void add_opaque(ShadedPacket const& shaded, SurfacePacket const& surfaces, HitPa
     for_each_lane(present, [&](int i) {
         out.radiance.set(i, shaded.radiance.get(i));
         out.depth[i] = hits.t[i];
+        keep_light(shaded, i, out);
     });
     if (moves) {
         for_each_lane(present, [&](int i) { keep_surface(hits, surfaces, shaded, i, out); });
@@ -78,6 +85,7 @@ LaneMask add_layer(ShadedPacket const& shaded, SurfacePacket const& surfaces, Hi
         if (weight > state.weight[i]) {
             state.weight[i] = weight;
             out.depth[i] = hits.t[i];
+            keep_light(shaded, i, out);
             if (moves) {
                 keep_surface(hits, surfaces, shaded, i, out);
             }
@@ -88,19 +96,37 @@ LaneMask add_layer(ShadedPacket const& shaded, SurfacePacket const& surfaces, Hi
 }
 
 /// Shades the lanes of `active`. `bounces`: how often light may still be followed along mirror reflections.
-void shade(PreparedScene const& scene, SurfacePacket const& surfaces, LaneMask active, int bounces, ShadedPacket& out) {
+void shade(PreparedScene const& scene, HitPacket const& hits, SurfacePacket const& surfaces, LaneMask active,
+           Footprint const& footprint, int bounces, ShadedPacket& out) {
+    SurroundingLight around;
+    find_surrounding_light(scene, hits, surfaces, active & ~surfaces.unlit, footprint, around);
     LobePacket lobes;
     MirrorRays mirror;
-    shade_surroundings(scene, surfaces, active, bounces > 0, lobes, mirror, out);
+    shade_surroundings(scene, surfaces, around, active, bounces > 0, lobes, mirror, out);
+    LaneFloats from_around;
+    if (scene.light_cache != nullptr) {
+        for_each_lane(active, [&](int i) {
+            out.light[i] = luminance(around.diffuse.get(i));
+            from_around[i] = luminance(out.radiance.get(i) - surfaces.emissive.get(i));
+        });
+    }
     if (mirror.lanes != 0) {
         TracedPacket reflected{};
+        mirror.footprint.pixels = footprint.pixels;
+        mirror.footprint.is_block = footprint.is_block;
         trace(scene, mirror.rays, mirror.lanes, mirror.footprint, bounces - 1, reflected);
         for_each_lane(mirror.lanes, [&](int i) {
             out.radiance.set(i, out.radiance.get(i) + mirror.share.get(i) * reflected.radiance.get(i));
         });
         out.segments += reflected.segments;
     }
-    shade_lights(scene, surfaces, active, lobes, out);
+    shade_lights(scene, surfaces, active, lobes, around.is_plane, out);
+    if (scene.light_cache != nullptr) {
+        for_each_lane(active, [&](int i) {
+            float const all = luminance(out.radiance.get(i));
+            out.light_share[i] = all > 0 ? std::clamp(from_around[i] / all, 0.0f, 1.0f) : 0.0f;
+        });
+    }
 }
 
 } // namespace
@@ -121,6 +147,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
         out.radiance.set(i, Vec3(0));
         out.depth[i] = INFINITY;
         out.surface.instance[i] = no_instance;
+        out.light[i] = out.light_share[i] = 0;
     });
     HitPacket hits{};
     SurfacePacket surfaces{}; // lanes that meet nothing are computed along with the others: on zeros
@@ -136,7 +163,7 @@ void trace(PreparedScene const& scene, RayPacket& rays, LaneMask active, Footpri
         LaneMask const present = make_surfaces(scene.instances, rays, hits, hit, footprint, surfaces);
         LaneMask passed = 0;
         if (present != 0) {
-            shade(scene, surfaces, present, bounces, shaded);
+            shade(scene, hits, surfaces, present, footprint, bounces, shaded);
             out.segments += shaded.segments;
             out.reflects |= shaded.reflects;
             if (scene.see_through) {

@@ -16,6 +16,7 @@ struct TracedPacket {
     /// moves; in lanes that have lost one, where rays leave the surface and the unit normal of its triangle.
     LaneIndices lost_light;
     LaneVec3 leaving, facet;
+    LaneFloats light, light_share; ///< of the surface that gives the depth, as in `ShadedPacket`; 0: of the background
     LaneMask reflects = 0; ///< lanes that show a traced mirror reflection
     std::uint32_t segments = 0; ///< rays traced for it, shadow and mirror rays included
 };

@@ -28,7 +28,31 @@ std::uint64_t key_of(SentTile const& sent) {
 Mirror::Mirror(Viewport viewport)
     : viewport_(viewport), columns_((viewport.width + cell_side - 1) / cell_side),
       rows_((viewport.height + cell_side - 1) / cell_side),
-      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {}
+      square_columns_((columns_ + square_cells - 1) / square_cells),
+      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)),
+      changed_(static_cast<std::size_t>(square_columns_) *
+               static_cast<std::size_t>((rows_ + square_cells - 1) / square_cells)) {}
+
+bool Mirror::has_changed(PixelRect const& rect, std::uint64_t since) const {
+    constexpr int side = square_cells * cell_side;
+    int const right = std::min(rect.right / side, square_columns_);
+    int const bottom = std::min(rect.bottom / side, static_cast<int>(changed_.size()) / std::max(square_columns_, 1));
+    for (int row = rect.top / side; row < bottom; ++row) {
+        for (int column = rect.left / side; column < right; ++column) {
+            if (changed_[static_cast<std::size_t>(row) * static_cast<std::size_t>(square_columns_) +
+                         static_cast<std::size_t>(column)] > since) {
+                return true;
+            }
+        }
+    }
+    return false;
+}
+
+/// Notes that any cell may have changed.
+void Mirror::note_changes() {
+    ++changes_;
+    std::ranges::fill(changed_, changes_);
+}
 
 bool Mirror::looks_at(MirrorView const& view) const {
     return target_.scene_time == view.scene_time && same_camera(target_.rays, view.rays);
@@ -44,6 +68,8 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions, bool moves
     Moment const& base = moments_[base_];
     awaits_moment_ = base.number > 0 && (!same_camera(base.rays, view.rays) || last_number_ > base.number);
     std::ranges::fill(cells_, Cell{});
+    note_changes();
+    looked_ = changes_;
     erase_forgotten();
     for (Moment& moment : moments_) {
         draw(moment, 0, motions, false);
@@ -56,6 +82,7 @@ float Mirror::luma_of(Cell const& cell, Vec2 at) const {
 }
 
 bool Mirror::mark(std::span<CellFault const> faults) {
+    ++changes_;
     auto const cell_of = [](float pixel, int count) {
         return std::clamp(static_cast<int>(std::round(pixel / float{cell_side})), 0, count);
     };
@@ -68,6 +95,7 @@ bool Mirror::mark(std::span<CellFault const> faults) {
                 Cell& cell = cells_[index_of(column, row)];
                 cell.is_wrong = cell.is_wrong || fault.is_wrong;
                 cell.stale = std::max(cell.stale, fault.stale);
+                note_change(column, row);
             }
         }
     }
@@ -82,12 +110,36 @@ void Mirror::forget(std::span<SentTile const> framelets) {
     }
 }
 
+/// Erases pieces, in order, for which `goes` is true.
+template <class Goes>
+void Mirror::erase_pieces(Moment& moment, Goes goes) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
+        if (!goes(moment.pieces[i])) {
+            if (kept != i) {
+                moment.pieces[kept] = moment.pieces[i];
+                moment.cells[kept] = moment.cells[i];
+            }
+            ++kept;
+        }
+    }
+    moment.pieces.resize(kept);
+    moment.cells.resize(kept);
+}
+
+void Mirror::append(Moment& moment, std::span<Piece const> pieces) const {
+    moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
+    for (Piece const& piece : pieces) {
+        moment.cells.push_back(static_cast<std::uint32_t>(cell_under(piece.centre)));
+    }
+}
+
 void Mirror::erase_forgotten() {
     for (Moment& moment : moments_) {
         bool const outliers = shows_outliers(moment);
         std::uint64_t last = 0; // pieces of a framelet follow each other
         bool is_gone = false;
-        std::erase_if(moment.pieces, [&](Piece const& piece) {
+        erase_pieces(moment, [&](Piece const& piece) {
             if (std::uint64_t const key = key_of(piece.of); key != last) {
                 last = key;
                 is_gone = forgotten_.contains(key);
@@ -106,6 +158,7 @@ void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Pie
     if (pieces.empty()) {
         return;
     }
+    ++changes_;
     SceneTime const scene_time = pieces.front().scene_time;
     if (moments_[base_].number == 0 || !same_camera(moments_[base_].rays, rays)) {
         begin_base(rays, scene_time);
@@ -131,7 +184,7 @@ void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece 
         }
     }
     std::size_t const first = moment.pieces.size();
-    moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
+    append(moment, pieces);
     draw(moment, first, motions, true);
 }
 
@@ -140,6 +193,7 @@ void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
         moments_[base_].number = last_number_; // what the last camera saw is as recent as what moved before it
     }
     base_ = static_cast<std::size_t>(&begin_slot(rays, scene_time) - moments_.data());
+    note_changes(); // other cells give way
 }
 
 /// The slot of what moves at this scene time before the newest camera, since its base began.
@@ -166,7 +220,7 @@ void Mirror::settle_now() {
         if (!belongs_to_base(moment)) {
             continue;
         }
-        base.pieces.insert(base.pieces.end(), moment.pieces.begin(), moment.pieces.end());
+        append(base, moment.pieces);
         if (moment.number > newest) {
             newest = moment.number;
             base.scene_time = moment.scene_time;
@@ -188,23 +242,30 @@ Mirror::Moment& Mirror::free_slot() {
         for (Cell& cell : cells_) {
             cell = cell.is_shown() && &moments_[cell.moment] == &free ? Cell{} : cell;
         }
-        empty(free);
+        note_changes();
+        clear(free); // its room is needed again at once
     }
     return free;
 }
 
-void Mirror::empty(Moment& moment) {
+void Mirror::clear(Moment& moment) {
     moment.number = 0;
     moment.pieces.clear();
+    moment.cells.clear();
     moment.reprojected.clear();
+}
+
+void Mirror::empty(Moment& moment) const {
+    clear(moment);
     give_back_room(moment);
 }
 
 /// A picture at rest has many times the pieces that one has while things move: not every moment keeps room for that,
 /// since after an hour each has held such a picture once.
-void Mirror::give_back_room(Moment& moment) {
+void Mirror::give_back_room(Moment& moment) const {
     if (moment.pieces.capacity() > std::max(cells_.size() / cells_per_kept_piece, 4 * moment.pieces.size())) {
         moment.pieces.shrink_to_fit();
+        moment.cells.shrink_to_fit();
         moment.reprojected.resize(std::min(moment.reprojected.size(), moment.pieces.size()));
         moment.reprojected.shrink_to_fit();
     }
@@ -235,8 +296,11 @@ void Mirror::find_newest(std::span<Piece const> pieces) {
 
 /// Marks those pieces of a moment as replaced that are older than the newest at their position.
 void Mirror::replace(Moment& moment) {
-    for (Piece& piece : moment.pieces) {
-        piece.is_replaced = piece.is_replaced || piece.of.batch < newest_batch_[cell_under(piece.centre)];
+    for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
+        std::uint64_t const newest = newest_batch_[moment.cells[i]];
+        if (newest > 0 && moment.pieces[i].of.batch < newest) { // most pieces are not looked at
+            moment.pieces[i].is_replaced = true;
+        }
     }
 }
 
@@ -287,6 +351,7 @@ void Mirror::expect_from(Moment const& moment, std::size_t first) {
                          [&](int column, int row, unsigned) {
                              Cell& cell = cells_[index_of(column, row)];
                              cell.stale = std::max(cell.stale, stale);
+                             note_change(column, row);
                          });
     }
 }
@@ -311,6 +376,7 @@ void Mirror::cover(Moment const& moment, std::size_t index) {
         for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
             Cell& cell = cells_[index_of(column, row)];
             cell.covered = 0xffff;
+            note_change(column, row);
             if (!cell.is_shown() && moment.reprojected[index].is_in_picture()) {
                 put(moment, index, moment.reprojected[index].inverse_depth, 1, cell);
             }
@@ -322,6 +388,7 @@ void Mirror::cover(Moment const& moment, std::size_t index) {
 void Mirror::show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new) {
     ReprojectedPiece const& reprojected = moment.reprojected[index];
     Cell& cell = cells_[index_of(column, row)];
+    note_change(column, row);
     if (is_new && moment.is_of_camera) {
         cell.is_wrong = false;
         cell.stale = 0;

@@ -57,6 +57,13 @@ public:
     bool camera_stands() const { return camera_stands_; }
     /// The moment that was looked at last.
     MirrorView const& view() const { return target_; }
+    /// Counts what may change cells: looks, and whatever came or was marked since; `looked`: its value at the last
+    /// look.
+    std::uint64_t changes() const { return changes_; }
+    std::uint64_t looked() const { return looked_; }
+    /// True where a cell of a square of 16 pixels a side, or of several, may have changed after `changes` was `since`.
+    /// `rect`: pixels, multiples of 16.
+    bool has_changed(PixelRect const& rect, std::uint64_t since) const;
     /// True when the picture looked at is of this moment.
     bool looks_at(MirrorView const& view) const;
 
@@ -80,6 +87,7 @@ private:
         SceneTime scene_time = 0; ///< of pieces that move
         std::uint64_t number = 0; ///< counts moments in the order in which they came; 0: the slot is free
         std::vector<Piece> pieces;
+        std::vector<std::uint32_t> cells; ///< one each: index of the cell below its centre, in the moment's picture
         std::vector<ReprojectedPiece> reprojected; ///< one each, in the picture that is looked at
         bool is_of_camera = false; ///< its camera is the one that is looked through
     };
@@ -87,14 +95,23 @@ private:
         return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns_) + static_cast<std::size_t>(column);
     }
     void erase_forgotten();
+    template <class Goes>
+    static void erase_pieces(Moment& moment, Goes goes);
+    void append(Moment& moment, std::span<Piece const> pieces) const;
     std::size_t cell_under(Vec2 at) const;
+    void note_changes();
+    void note_change(int column, int row) {
+        changed_[static_cast<std::size_t>(row / square_cells) * static_cast<std::size_t>(square_columns_) +
+                 static_cast<std::size_t>(column / square_cells)] = changes_;
+    }
     void find_newest(std::span<Piece const> pieces);
     void replace(Moment& moment);
     void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
     bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
     void settle_now();
-    void empty(Moment& moment);
-    void give_back_room(Moment& moment);
+    static void clear(Moment& moment);
+    void empty(Moment& moment) const;
+    void give_back_room(Moment& moment) const;
     void begin_base(ViewRays const& rays, SceneTime scene_time);
     Moment& slot_of_moving(SceneTime scene_time);
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
@@ -110,9 +127,13 @@ private:
                    Cell const& cell) const;
     bool shows_outliers(Moment const& moment) const;
 
+    static constexpr int square_cells = 4; ///< along a side of the squares whose changes are noted
+
     Viewport viewport_;
-    int columns_, rows_;
+    int columns_, rows_, square_columns_;
     std::vector<Cell> cells_;
+    std::vector<std::uint64_t> changed_; ///< by square: what `changes_` was when it changed last
+    std::uint64_t changes_ = 0, looked_ = 0;
     /// Slots of moments, twice as many as a viewer has, since it says late what it evicts.
     std::array<Moment, 2 * FrameletPool::most_moments> moments_;
     std::unordered_set<std::uint64_t> forgotten_; ///< keys of framelets

@@ -1,6 +1,9 @@
 #include "server/sampling/mirror/mirror_checks.h"
 
 #include <algorithm>
+#include <cmath>
+
+#include <glm/vector_relational.hpp>
 
 #include "common/error.h"
 
@@ -11,6 +14,8 @@ namespace {
 constexpr float nearer_share = 0.25f;
 /// Standard deviations beyond which the difference of a probe is a change, or the sum of all differences around it.
 constexpr float doubt = 4;
+/// Luma by which light has to be known better for a place to be stale: a display step.
+constexpr float least_learnt = 1.0f / 255;
 
 Cell const& cell_at(Mirror const& mirror, Vec2 at) {
     return mirror.cell(static_cast<int>(at.x) / cell_side, static_cast<int>(at.y) / cell_side);
@@ -71,6 +76,15 @@ Difference compare(Mirror const& mirror, Probe const& probe, float luma) {
     return {luma - probe.luma, chance_difference(piece.detail / scale, probe.spacing + scale * piece.spacing, side)};
 }
 
+/// By how much the luma of a place is another one since more is known of its light. Neither texture nor chance is in
+/// it: the same light is looked up at the same place.
+float learnt_luma(Probe const& probe, float luma, SampleLight const& now) {
+    constexpr float encoding = 2.2f; // luma goes by this root of light
+    bool const is_known = now.light > 0 && probe.light > 0;
+    float const most = std::max(now.light, probe.light);
+    return is_known ? luma * now.share * std::abs(now.light - probe.light) / (most * encoding) : 0;
+}
+
 } // namespace
 
 std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth) {
@@ -86,20 +100,27 @@ std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std
     return faults;
 }
 
-void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes) {
+void list_probes(Mirror const& mirror, RayGrid const& grid, bool of_any_time, std::vector<Probe>& probes) {
     probes.clear();
+    Vec2 const size(mirror.viewport().width, mirror.viewport().height);
     for_each_position(grid, mirror.viewport(), [&](Vec2 at) {
         Cell const& shown = cell_at(mirror, at);
         if (shown.is_shown() && mirror.covers(shown, at) && !mirror.piece_of(shown).is_outlier &&
-            mirror.time_of(shown) != mirror.view().scene_time) {
-            probes.push_back({at, 1, mirror.luma_of(shown, at)});
+            (of_any_time || mirror.time_of(shown) != mirror.view().scene_time)) {
+            Vec2 const middle = mirror.position_of(shown);
+            bool const compares_light = of_any_time && glm::all(glm::greaterThanEqual(middle, Vec2(0))) &&
+                                        glm::all(glm::lessThan(middle, size));
+            Vec2 const position = compares_light ? middle : at;
+            float const light = compares_light ? mirror.piece_of(shown).light : 0;
+            probes.push_back({position, 1, mirror.luma_of(shown, position), light});
         }
     });
 }
 
-std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, std::span<float const> luma,
+std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, ProbeLooks const& looks,
                                   int spacing) {
-    FRAMELET_CHECK(probes.size() == luma.size());
+    FRAMELET_CHECK(probes.size() == looks.luma.size());
+    FRAMELET_CHECK(looks.light.empty() || looks.light.size() == probes.size());
     if (probes.empty()) {
         return {};
     }
@@ -109,10 +130,11 @@ std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> p
     };
     std::vector<Difference> differences(static_cast<std::size_t>(columns * (mirror.viewport().height / spacing + 3)));
     for (std::size_t i = 0; i < probes.size(); ++i) {
-        differences[static_cast<std::size_t>(index_at(probes[i].position))] = compare(mirror, probes[i], luma[i]);
+        differences[static_cast<std::size_t>(index_at(probes[i].position))] = compare(mirror, probes[i], looks.luma[i]);
     }
     std::vector<CellFault> faults;
-    for (Probe const& probe : probes) {
+    for (std::size_t k = 0; k < probes.size(); ++k) {
+        Probe const& probe = probes[k];
         int const at = index_at(probe.position);
         Difference const own = differences[static_cast<std::size_t>(at)];
         Difference around;
@@ -124,6 +146,11 @@ std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> p
         }
         if (own.chance > 0 && (own.beyond_chance() || around.beyond_chance())) {
             faults.push_back({.at = probe.position, .side = spacing, .stale = own.luma * own.luma});
+        } else if (!looks.light.empty()) {
+            float const learnt = learnt_luma(probe, looks.luma[k], looks.light[k]);
+            if (learnt > least_learnt) {
+                faults.push_back({.at = probe.position, .side = spacing, .stale = learnt * learnt});
+            }
         }
     }
     return faults;

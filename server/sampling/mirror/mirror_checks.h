@@ -18,13 +18,14 @@ namespace framelet {
 std::vector<CellFault> find_wrong(Mirror const& mirror, RayGrid const& grid, std::span<float const> inverse_depth);
 
 /// Replaces `probes` by one for each position of a grid that shows, well within a surface, what is of another time:
-/// with the luma that the viewer shows there.
-void list_probes(Mirror const& mirror, RayGrid const& grid, std::vector<Probe>& probes);
+/// with the luma that the viewer shows there. `of_any_time`: of any; such a probe is in the middle of its piece where
+/// that is in view, and has the light of it.
+void list_probes(Mirror const& mirror, RayGrid const& grid, bool of_any_time, std::vector<Probe>& probes);
 
-/// Finds where the moment looks otherwise than the viewer shows. `luma`: what the probes really show of the moment, in
-/// their order; where that differs from what the viewer shows by more than chance, the cells around are stale.
+/// Finds where the moment looks otherwise than the viewer shows: where what probes really show of the moment differs
+/// from that by more than chance, or the light cache says more by now than it did, the cells around are stale.
 /// `spacing`: pixels from one probe to the next.
-std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, std::span<float const> luma,
+std::vector<CellFault> find_stale(Mirror const& mirror, std::span<Probe const> probes, ProbeLooks const& looks,
                                   int spacing);
 
 } // namespace framelet

@@ -32,11 +32,11 @@ constexpr int part_side(int tile_side) {
 
 /// Sums over samples of one layer.
 struct Sum {
-    float count = 0, luma = 0, x = 0, y = 0, xx = 0, yy = 0, luma_x = 0, luma_y = 0;
+    float count = 0, luma = 0, light = 0, x = 0, y = 0, xx = 0, yy = 0, luma_x = 0, luma_y = 0;
     Vec2 low{INFINITY}, high{-INFINITY};
     bool reflects = false;
 
-    void add(std::uint32_t i, float value, bool reflected) {
+    void add(Framelet const& rendered, std::uint32_t i, float value) {
         auto const column = static_cast<float>(morton_x(i));
         auto const row = static_cast<float>(morton_y(i));
         count += 1;
@@ -49,7 +49,8 @@ struct Sum {
         luma_y += value * row;
         low = glm::min(low, Vec2(column, row));
         high = glm::max(high, Vec2(column, row));
-        reflects = reflects || reflected;
+        reflects = reflects || rendered.reflects[i];
+        light += rendered.light.empty() ? 0.0f : rendered.light[i];
     }
 };
 
@@ -59,9 +60,9 @@ struct OutlierSum : Sum {
     Drift drift; ///< its jerk is the greatest
     BodyNumber body = static_body; ///< of the last one
 
-    void add(std::uint32_t i, float value, bool reflected, Outlier const& sample) {
+    void add(Framelet const& rendered, std::uint32_t i, float value, Outlier const& sample) {
         float const w = bounded(sample.inverse_depth);
-        Sum::add(i, value, reflected);
+        Sum::add(rendered, i, value);
         inverse_depth += w;
         least = std::min(least, w);
         most = std::max(most, w);
@@ -87,6 +88,7 @@ Piece piece_of(Sum const& sum, Vec2 corner, float spacing, float detail) {
     piece.half_side = (0.5f * spacing * filled) * side;
     piece.spacing = spacing;
     piece.luma = share * sum.luma;
+    piece.light = share * sum.light;
     auto const slope = [&](float product, float square, float at) {
         float const spread = share * square - at * at;
         return spread > 0.1f ? (share * product - at * piece.luma) / (spread * spacing) : 0.0f;
@@ -173,9 +175,9 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
         auto const first_outlier = outliers;
         for (std::uint32_t i = first; i < first + count; ++i) {
             if (shape.layer_of[i] == FrameletShape::outlier) {
-                all.add(i, luma[i], rendered.reflects[i], *outliers++);
+                all.add(rendered, i, luma[i], *outliers++);
             } else {
-                sums[shape.layer_of[i]].add(i, luma[i], rendered.reflects[i]);
+                sums[shape.layer_of[i]].add(rendered, i, luma[i]);
             }
         }
         auto const append = [&](Sum const& sum, auto const& put) {
@@ -198,7 +200,7 @@ void cut_pieces(Framelet const& rendered, DisplayFramelet const& shown, Framelet
             for (std::uint32_t i = first; i < first + count; ++i) {
                 if (shape.layer_of[i] == FrameletShape::outlier) {
                     bool const near = bounded(sample->inverse_depth) > 0.5f * (all.least + all.most);
-                    halves[near ? 0 : 1].add(i, luma[i], rendered.reflects[i], *sample++);
+                    halves[near ? 0 : 1].add(rendered, i, luma[i], *sample++);
                 }
             }
         } else {

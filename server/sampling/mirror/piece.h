@@ -23,6 +23,7 @@ struct Piece {
     /// Energy of the detail between samples a pixel apart, mean squared luma. Between samples `s` pixels apart it is
     /// about s times as much, as it is of edges, which are most of a picture.
     float detail = 0;
+    float light = 0; ///< as of `Framelet::light`, mean; 0: not known
     float decorrelation = 0; ///< pixels of spacing a second: see `common/framelet/sample_worth.h`
     SceneTime scene_time = 0; ///< when it was rendered
     Drift drift; ///< at the centre

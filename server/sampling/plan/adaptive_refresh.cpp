@@ -51,7 +51,7 @@ void AdaptiveRefresh::see(RefreshInput const& input) {
         held_tiles_ = HeldTiles(regions_.plane());
     }
     bool const is_other_kind = is_another || moves_samples_ != input.moves_samples;
-    if (is_other_kind || seen_->exposure != state.exposure ||
+    if (is_other_kind || seen_->transform != state.transform ||
         seen_->view.camera.projection != state.view.camera.projection) {
         moments_ = MomentRefresh(state.view.viewport);
         held_tiles_.forget_contents();
@@ -95,7 +95,8 @@ void AdaptiveRefresh::plan(RefreshInput const& input, RefreshPlan& plan) {
     plan.viewport = view.viewport;
     plan.moment_begun = input.moment ? moment.begun : input.now;
     bool const moves_samples = input.moves_samples && is_reprojectable(view.camera);
-    plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time, input.motions, moves_samples};
+    plan.moment = {make_view_rays(view.camera, view.viewport), moment.state.scene_time, input.motions, moves_samples,
+                   input.light_changes};
     plan.will_be_moved = input.moment && moves_samples;
     plan.limits = input.limits;
     plan.completion = input.completion;
@@ -138,8 +139,9 @@ void AdaptiveRefresh::plan_cycle(RefreshInput const& input, double begun, Refres
     double rays = samples * rays_a_sample(input);
     if (!moments_.looks_at(begun)) {
         double const checked = input.moment ? rays_a_sample(input) * input.samples_per_second * checked_seconds : 0;
-        MomentChecks const checks = moments_.look(plan.moment, begun, input.limits.visibility_share * checked,
-                                                  scene_moves_ ? input.limits.probe_share * checked : 0, plan.probes);
+        MomentChecks const checks =
+            moments_.look(plan.moment, begun, input.limits.visibility_share * checked,
+                          scene_moves_ || input.light_changes ? input.limits.probe_share * checked : 0, plan.probes);
         rays -= checks.cost(plan.viewport) + probe_cost * static_cast<double>(plan.probes.size());
         samples = std::min(samples, rays); // checks are rendered and not sent
         if (input.moment) { // what stands is all rendered anew in the end
@@ -214,18 +216,17 @@ void AdaptiveRefresh::take_batch(std::size_t most_framelets, RefreshPlan& plan) 
 
 std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
                                                         std::span<DisplayFramelet const> framelets,
-                                                        std::span<Framelet const> rendered,
-                                                        std::span<float const> probe_luma,
+                                                        std::span<Framelet const> rendered, ProbeLooks const& looks,
                                                         std::span<float const> errors) {
     FRAMELET_CHECK(framelets.size() == plan.tiles.size() && rendered.size() == plan.tiles.size());
     FRAMELET_CHECK(errors.empty() || errors.size() == plan.tiles.size());
-    FRAMELET_CHECK(probe_luma.size() == plan.probes.size());
+    FRAMELET_CHECK(looks.luma.size() == plan.probes.size());
     if (plan.viewport != regions_.plane().viewport()) {
         send_.assign(framelets.size(), 0);
         return send_;
     }
     if (plan.checks && plan.checks->probe_spacing > 0) {
-        moments_.note_looks(plan.moment, plan.probes, probe_luma, plan.checks->probe_spacing);
+        moments_.note_looks(plan.moment, plan.probes, looks, plan.checks->probe_spacing);
     }
     if (!are_shown(plan.rays_per_sample)) {
         send_.assign(framelets.size(), 0);
@@ -257,8 +258,9 @@ std::vector<std::uint8_t> const& AdaptiveRefresh::learn(RefreshPlan const& plan,
             Tile const tile = plan.tiles[first];
             bool const same = contents_[first] != 0 && held_tiles_.shows(tile, contents_[first], means) &&
                               (keeps_means || !held_tiles_.shows_means(tile));
-            send_[first] = same && !plan.will_be_moved ? 0 : 1;
-            if (!same) {
+            bool const sends = !same || plan.will_be_moved;
+            send_[first] = sends ? 1 : 0;
+            if (sends) { // single rays that have not changed still hide the means of before
                 held_tiles_.put(tile, contents_[first], means);
             }
         }

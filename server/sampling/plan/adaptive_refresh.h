@@ -29,12 +29,12 @@ public:
     /// not learnt yet an empty plan only says that there is nothing else.
     void plan(RefreshInput const& input, RefreshPlan& plan);
 
-    /// Takes in what was rendered by a plan: display samples, the same with depth, luma of the probes. `errors`: mean
+    /// Takes in what was rendered by a plan: display samples, the same with depth, looks of the probes. `errors`: mean
     /// squared error left in each framelet; empty: the samples are to tell. Plans are learnt once each and in order.
     /// Returns for each framelet whether the viewer needs it, which it does not where it shows the same already, or its
     /// picture has another size by now; valid until the next call.
     std::vector<std::uint8_t> const& learn(RefreshPlan const& plan, std::span<DisplayFramelet const> framelets,
-                                           std::span<Framelet const> rendered, std::span<float const> probe_luma,
+                                           std::span<Framelet const> rendered, ProbeLooks const& looks,
                                            std::span<float const> errors = {});
 
     /// Notes that the viewer gets those framelets of a plan for which `sent` (of the plan's tiles) is not 0, in a batch

@@ -30,6 +30,7 @@ struct RefreshInput {
     float bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal)
     BodyMotions const* motions = nullptr; ///< of bodies, as the viewer knows them or would; not null
     bool moves_samples = true; ///< the viewer moves what it holds, where cameras let it
+    bool light_changes = false; ///< more is learnt of the light, also where all stands
     /// The largest number of framelets of one batch; 0: what half a cycle has time for, so that it shows sooner, or all
     /// of it while nothing moves.
     std::size_t batch_framelets = 0;

@@ -1,6 +1,7 @@
 // The states of what is to be seen, and of what is rendered of it.
 #pragma once
 
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 
 namespace framelet {
@@ -8,7 +9,7 @@ namespace framelet {
 /// State of what is to be seen. The picture on screen is worth refining for as long as this stays the same.
 struct ViewState {
     NumberedView view;
-    float exposure = 1; ///< factor on radiance
+    DisplayTransform transform; ///< of radiance
     SceneTime scene_time = 0; ///< 0 where nothing moves
 };
 
@@ -24,7 +25,7 @@ struct HeldMoment {
 
 /// True when both show the same picture; the number of the camera does not matter.
 inline bool same_picture(ViewState const& a, ViewState const& b) {
-    return a.view.camera == b.view.camera && a.view.viewport == b.view.viewport && a.exposure == b.exposure &&
+    return a.view.camera == b.view.camera && a.view.viewport == b.view.viewport && a.transform == b.transform &&
            a.scene_time == b.scene_time;
 }
 

@@ -141,40 +141,69 @@ std::vector<Index> clips_named(Scene const& scene, std::span<std::string const> 
     return chosen;
 }
 
-ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time) {
-    ScenePose pose;
-    pose.time = time;
+PoseEvaluator::PoseEvaluator(Scene const& scene, std::span<Index const> clips)
+    : scene_(scene), clips_(clips), locals_(scene.nodes.size()), placed_(scene.nodes.size()) {
     std::size_t const count = scene.nodes.size();
-    std::vector<Transform> locals(count);
-    pose.morph_weights.resize(count);
-    for (std::size_t i = 0; i < count; ++i) {
-        Node const& node = scene.nodes[i];
-        locals[i] = node.local;
-        if (node.mesh != none) {
-            pose.morph_weights[i] = node.morph_weights.empty()
-                                        ? scene.meshes[static_cast<std::size_t>(node.mesh)].morph_weights
-                                        : node.morph_weights;
+    std::vector<std::uint8_t> moves(count);
+    for (Index const clip : clips) {
+        for (AnimationChannel const& channel : scene.clips[static_cast<std::size_t>(clip)].channels) {
+            moves[static_cast<std::size_t>(channel.node)] = 1;
         }
     }
-    for (Index const clip_index : clips) {
-        AnimationClip const& clip = scene.clips[static_cast<std::size_t>(clip_index)];
+    pose_.world_from_node.resize(count);
+    pose_.morph_weights.resize(count);
+    for (std::size_t i = 0; i < count; ++i) { // parents come first
+        if (moves[i] != 0) {
+            animated_.push_back(i);
+        }
+        Index const parent = scene.nodes[i].parent;
+        moves[i] |= parent != none ? moves[static_cast<std::size_t>(parent)] : std::uint8_t{0};
+        if (moves[i] != 0) {
+            moving_.push_back(i);
+        }
+        rest(i);
+        place(i);
+    }
+}
+
+/// Sets what is a node's own to what it is without clips.
+void PoseEvaluator::rest(std::size_t i) {
+    Node const& node = scene_.nodes[i];
+    locals_[i] = node.local;
+    if (node.mesh != none) {
+        pose_.morph_weights[i] = node.morph_weights.empty()
+                                     ? scene_.meshes[static_cast<std::size_t>(node.mesh)].morph_weights
+                                     : node.morph_weights;
+    }
+}
+
+void PoseEvaluator::place(std::size_t i) {
+    Node const& node = scene_.nodes[i];
+    glm::dmat4 const local = node.matrix ? *node.matrix : matrix_of(locals_[i]);
+    placed_[i] = usable(node.parent == none ? local : placed_[static_cast<std::size_t>(node.parent)] * local);
+    glm::dmat4 world = placed_[i];
+    world[3] -= glm::dvec4(scene_.origin, 0);
+    pose_.world_from_node[i] = Mat4(world);
+}
+
+ScenePose const& PoseEvaluator::at(SceneTime time) {
+    pose_.time = NAN; // until all is there
+    std::ranges::for_each(animated_, [this](std::size_t i) { rest(i); });
+    for (Index const clip_index : clips_) {
+        AnimationClip const& clip = scene_.clips[static_cast<std::size_t>(clip_index)];
         float const seconds = clip_time(clip, time);
         for (AnimationChannel const& channel : clip.channels) {
             auto const node = static_cast<std::size_t>(channel.node);
-            apply_channel(channel, seconds, locals[node], pose.morph_weights[node]);
+            apply_channel(channel, seconds, locals_[node], pose_.morph_weights[node]);
         }
     }
-    pose.world_from_node.resize(count);
-    std::vector<glm::dmat4> placed(count); // as the files have it
-    for (std::size_t i = 0; i < count; ++i) {
-        Node const& node = scene.nodes[i];
-        glm::dmat4 const local = node.matrix ? *node.matrix : matrix_of(locals[i]);
-        placed[i] = usable(node.parent == none ? local : placed[static_cast<std::size_t>(node.parent)] * local);
-        glm::dmat4 world = placed[i];
-        world[3] -= glm::dvec4(scene.origin, 0);
-        pose.world_from_node[i] = Mat4(world);
-    }
-    return pose;
+    std::ranges::for_each(moving_, [this](std::size_t i) { place(i); });
+    pose_.time = time;
+    return pose_;
+}
+
+ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time) {
+    return PoseEvaluator(scene, clips).at(time);
 }
 
 std::vector<bool> animated_nodes(Scene const& scene, std::span<Index const> clips) {

@@ -29,7 +29,31 @@ std::vector<Index> default_clips(Scene const& scene);
 /// The clips of these names. Throws InputError that lists the names there are.
 std::vector<Index> clips_named(Scene const& scene, std::span<std::string const> names);
 
-/// Evaluates the clips at `time`; each loops with its own duration. Rotations are interpolated along the shorter arc.
+/// Evaluates clips at one time after another: what none of them moves is placed once. Both must outlive it.
+class PoseEvaluator {
+public:
+    PoseEvaluator(Scene const& scene, std::span<Index const> clips);
+
+    /// The pose at `time`, until the next call. Each clip loops with its own duration. Rotations are interpolated along
+    /// the shorter arc.
+    ScenePose const& at(SceneTime time);
+    /// The last of these; before the first, without clips.
+    ScenePose const& pose() const { return pose_; }
+
+private:
+    void rest(std::size_t node);
+    void place(std::size_t node);
+
+    Scene const& scene_;
+    std::span<Index const> clips_;
+    std::vector<Transform> locals_;
+    std::vector<glm::dmat4> placed_; ///< as the files have it
+    std::vector<std::size_t> animated_; ///< nodes
+    std::vector<std::size_t> moving_; ///< nodes whose place in the world depends on these; parents first
+    ScenePose pose_;
+};
+
+/// One pose of such.
 ScenePose evaluate_pose(Scene const& scene, std::span<Index const> clips, SceneTime time);
 
 /// True for every node whose own transform one of the clips can change.

@@ -167,9 +167,10 @@ std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> cl
         tracks.push_back({static_cast<BodyNumber>(body), first_key, {}});
         tracks.back().keys.reserve(count);
     }
+    PoseEvaluator poses(scene, clips);
     for (std::size_t key = 0; key < count && !tracks.empty(); ++key) {
         double const number = static_cast<double>(first_key) + static_cast<double>(key);
-        ScenePose const pose = evaluate_pose(scene, clips, number / body_keys_per_second);
+        ScenePose const& pose = poses.at(number / body_keys_per_second);
         for (BodyTrack& track : tracks) {
             track.keys.push_back(body_pose(bodies, pose, track.body));
         }
@@ -180,9 +181,10 @@ std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> cl
 BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
                              std::size_t count) {
     BodyTrack track{camera_body(camera), first_key, {}};
+    PoseEvaluator poses(scene, clips);
     for (std::size_t key = 0; key < count; ++key) {
         double const number = static_cast<double>(first_key) + static_cast<double>(key);
-        Camera const at = scene_camera(scene, evaluate_pose(scene, clips, number / body_keys_per_second), camera);
+        Camera const at = scene_camera(scene, poses.at(number / body_keys_per_second), camera);
         track.keys.push_back({at.position, at.orientation, Vec3(1)});
     }
     return track;

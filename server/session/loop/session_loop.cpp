@@ -11,9 +11,9 @@
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
 
+#include "common/laps.h"
 #include "server/session/limits/wall_time.h"
 #include "server/session/loop/contained.h"
-#include "server/session/loop/laps.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -36,7 +36,7 @@ std::size_t thread_count() {
 
 struct SessionLoop::Viewer {
     std::shared_ptr<Session> session; ///< the newest
-    std::uint64_t number = 0; ///< number of its first session
+    std::uint64_t number = 0; ///< as `Session::number` of its first session
     std::unique_ptr<ViewerStream> stream;
     std::vector<StreamEvent> events; ///< scratch
     /// When something was rendered for it last; nothing: it needs no share of the time.
@@ -180,7 +180,7 @@ std::unique_ptr<SessionLoop::Viewer> SessionLoop::new_viewer(std::shared_ptr<Ses
     std::uint32_t const codings = session->codings();
     auto viewer = std::make_unique<Viewer>();
     viewer->session = session;
-    viewer->number = session->id();
+    viewer->number = session->number();
     viewer->stream = options_.make_stream ? options_.make_stream(options_.stream, codings)
                                           : std::make_unique<FrameletStream>(options_.stream, codings);
     if (options_.event_log != nullptr) {

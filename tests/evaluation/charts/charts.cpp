@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
 #include <utility>
 
@@ -23,10 +22,6 @@ void check(std::string const& title, std::vector<Curve> const& curves) {
         throw InputError("chart '" + title + "' has no curve");
     }
     for (Curve const& curve : curves) {
-        bool const has_band = !curve.low.empty() || !curve.high.empty();
-        if (has_band && (curve.low.size() != curve.x.size() || curve.high.size() != curve.x.size())) {
-            throw InputError("chart '" + title + "': the band of curve '" + curve.name + "' has not as many points");
-        }
         if (curve.x.size() != curve.y.size()) {
             throw InputError("chart '" + title + "': curve '" + curve.name + "' has " + std::to_string(curve.x.size()) +
                              " x but " + std::to_string(curve.y.size()) + " y");
@@ -41,7 +36,7 @@ void check(std::string const& title, std::vector<Curve> const& curves) {
     }
 }
 
-/// Appends the values of the points that are drawn. `axis` may be a list that some curves do not have.
+/// Appends the values of the points that are drawn.
 void add_values(std::vector<Curve> const& curves, std::vector<double> Curve::*axis, std::vector<double>& values) {
     for (Curve const& curve : curves) {
         for (std::size_t i = 0; i < (curve.*axis).size(); ++i) {
@@ -52,15 +47,9 @@ void add_values(std::vector<Curve> const& curves, std::vector<double> Curve::*ax
     }
 }
 
-Range range_of(std::vector<Curve> const& curves, std::initializer_list<std::vector<double> Curve::*> axes,
-               std::vector<Mark> const& marks = {}) {
+Range range_of(std::vector<Curve> const& curves, std::vector<double> Curve::*axis) {
     std::vector<double> values;
-    for (auto const axis : axes) {
-        add_values(curves, axis, values);
-    }
-    for (Mark const& mark : marks) {
-        values.push_back(mark.x);
-    }
+    add_values(curves, axis, values);
     return log_range(values);
 }
 
@@ -93,47 +82,15 @@ std::string data_block(std::string const& name, Curve const& curve, OptionalRang
     return out + "EOD\n";
 }
 
-/// Adds the data block of the curve's band and returns the command that fills it, to go before the line's.
-std::string add_band(Plot& plot, std::size_t i, Curve const& curve, LineStyle const& style, OptionalRange const& x,
-                     OptionalRange const& y) {
-    if (curve.low.empty()) {
-        return "";
-    }
-    std::string const block = block_name("band", i);
-    plot.data += block + " << EOD\n";
-    for (std::size_t k = 0; k < curve.x.size(); ++k) {
-        if (drawable(curve, k)) {
-            plot.data += axis_position(curve.x[k], x) + " " + axis_position(curve.low[k], y) + " " +
-                         axis_position(curve.high[k], y) + "\n";
-        }
-    }
-    plot.data += "EOD\n";
-    return block + " using 1:2:3 with filledcurves fc rgb '" + style.color +
-           "' fs transparent solid 0.12 noborder notitle";
-}
-
-std::string mark_commands(std::vector<Mark> const& marks) {
-    std::string commands;
-    for (Mark const& mark : marks) {
-        std::string const x = number(mark.x);
-        commands += "set arrow from " + x + ", graph 0 to " + x + ", graph 1 nohead dt 3 lc rgb '#999999' back\n";
-        commands += "set label " + quoted(mark.text) + " noenhanced at " + x +
-                    ", graph 0.98 right rotate by 90 offset -0.6,0 font ',9' textcolor rgb '#666666'\n";
-    }
-    return commands;
-}
-
-/// Adds the data blocks $curve0... and returns the plot command without an end of line.
+/// Adds a data block for each curve, numbered from `first` on, and returns the plot command without an end of line.
 std::string add_lines(Plot& plot, std::vector<Curve> const& curves, OptionalRange const& x, OptionalRange const& y,
-                      char const* with) {
+                      char const* with, std::size_t first = 0) {
     std::string command = "plot ";
     for (std::size_t i = 0; i < curves.size(); ++i) {
-        std::string const block = block_name("curve", i);
-        LineStyle const style = style_of(curves[i].name);
+        std::string const block = block_name("curve", first + i);
         plot.data += data_block(block, curves[i], x, y);
-        std::string const band = add_band(plot, i, curves[i], style, x, y);
-        command += (i == 0 ? "" : ", \\\n  ") + band + (band.empty() ? "" : ", \\\n  ") + block + " with " + with +
-                   " " + to_string(style) + " title " + quoted(curves[i].name);
+        command += (i == 0 ? "" : ", \\\n  ") + block + " with " + with + " " + to_string(style_of(curves[i].name)) +
+                   " title " + quoted(curves[i].name);
     }
     return command;
 }
@@ -169,20 +126,66 @@ std::string add_refreshes(Plot& plot, std::vector<ErrorSeries> const& series) {
     return command;
 }
 
+/// Adds a chart's data, blocks numbered from `first` on, and its commands; `look` are some that follow the common ones.
+void add_curves(Plot& plot, Curves const& chart, std::size_t first, std::string const& look) {
+    check(chart.title, chart.curves);
+    OptionalRange const x = chart.log_x ? OptionalRange(range_of(chart.curves, &Curve::x)) : std::nullopt;
+    OptionalRange const y = chart.log_y ? OptionalRange(range_of(chart.curves, &Curve::y)) : std::nullopt;
+    plot.commands += common_look(chart.title) + look + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
+    plot.commands += x ? log_axis_with_margin("x", *x) : "set xrange [*:*]\n";
+    plot.commands += y ? log_axis_with_margin("y", *y) : "set yrange [*:*]\n";
+    plot.commands += add_lines(plot, chart.curves, x, y, "linespoints", first) + "\n";
+}
+
 } // namespace
 
 Plot plot_of(Curves const& chart) {
-    check(chart.title, chart.curves);
-    OptionalRange const x =
-        chart.log_x ? OptionalRange(range_of(chart.curves, {&Curve::x}, chart.marks)) : std::nullopt;
-    OptionalRange const y =
-        chart.log_y ? OptionalRange(range_of(chart.curves, {&Curve::y, &Curve::low, &Curve::high})) : std::nullopt;
     Plot plot;
-    plot.commands = common_look(chart.title) + axis_title("x", chart.x_title) + axis_title("y", chart.y_title);
-    plot.commands += x ? log_axis_with_margin("x", *x) : "";
-    plot.commands += y ? log_axis_with_margin("y", *y) : "";
-    plot.commands += mark_commands(chart.marks);
-    plot.commands += add_lines(plot, chart.curves, x, y, chart.points_only ? "points" : "linespoints") + "\n";
+    add_curves(plot, chart, 0, "");
+    return plot;
+}
+
+Plot plot_of(Panels const& chart) {
+    if (chart.panels.empty() || chart.columns < 1) {
+        throw InputError("there is no panel to draw");
+    }
+    int const count = static_cast<int>(chart.panels.size());
+    int const rows = (count + chart.columns - 1) / chart.columns;
+    Plot plot;
+    plot.width = 340 * chart.columns;
+    plot.height = 280 * rows;
+    plot.commands = "set multiplot layout " + std::to_string(rows) + "," + std::to_string(chart.columns) + "\n";
+    std::size_t first = 0;
+    for (Curves const& panel : chart.panels) {
+        add_curves(plot, panel, first, first == 0 ? "set key inside right bottom font ',9'\n" : "unset key\n");
+        first += panel.curves.size();
+    }
+    plot.commands += "unset multiplot\n";
+    return plot;
+}
+
+Plot plot_of(Arrows const& chart) {
+    if (chart.arrows.empty()) {
+        throw InputError("chart '" + chart.title + "' has no arrow");
+    }
+    Plot plot;
+    plot.data = "$arrows << EOD\n";
+    for (Arrow const& arrow : chart.arrows) {
+        plot.data += number(arrow.from[0]) + " " + number(arrow.from[1]) + " " + number(arrow.to[0] - arrow.from[0]) +
+                     " " + number(arrow.to[1] - arrow.from[1]) + " " + number(arrow.to[0]) + " " + number(arrow.to[1]) +
+                     " \"" + arrow.name + "\"\n";
+    }
+    plot.data += "EOD\n";
+    std::string const own = style_of("framelet").color;
+    plot.commands = "set termoption noenhanced\n" + common_look(chart.title) +
+                    "unset key\nset offsets 0, graph 0.15, graph 0.05, graph 0.05\n" + axis_title("x", chart.x_title) +
+                    axis_title("y", chart.y_title) +
+                    "plot $arrows using 1:2:3:4 with vectors head filled lw 1.5 lc rgb '#999999', \\\n"
+                    "  '' using 1:2 with points pt 7 ps 0.8 lc rgb '#56b4e9', \\\n"
+                    "  '' using 5:6 with points pt 7 ps 1.1 lc rgb '" +
+                    own +
+                    "', \\\n"
+                    "  '' using 5:6:7 with labels left offset 0.8,0 font ',9'\n";
     return plot;
 }
 
@@ -199,7 +202,7 @@ Plot plot_of(ErrorOverTime const& chart) {
         rows += series.refreshes.empty() ? 0 : 1;
     }
     check(chart.title, curves);
-    Range const y = widened(range_of(curves, {&Curve::y}), mark_margin);
+    Range const y = widened(range_of(curves, &Curve::y), mark_margin);
     double const rows_share = row_height * static_cast<double>(rows);
     Range const with_rows{y.low / std::pow(y.high / y.low, rows_share / (1 - rows_share)), y.high};
 

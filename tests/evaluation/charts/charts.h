@@ -1,6 +1,7 @@
 // Draws charts of lines: error over time, error against cost. Values in, gnuplot scripts or files out.
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -9,32 +10,38 @@
 
 namespace framelet::bench {
 
-/// A line through points, in the order given. A point that is not finite leaves a gap.
+/// A line through points, in the order given, with a mark at each. A point that is not finite leaves a gap.
 struct Curve {
     std::string name; ///< name in the legend; fixes the colour (chart_style.h)
     std::vector<double> x;
     std::vector<double> y; ///< as many as `x`
-    /// Lower and upper edge of a band around the line, as many as `x`; empty: there is none.
-    std::vector<double> low{}, high{};
 };
 
-/// A vertical line with a word at its upper end.
-struct Mark {
-    double x = 0;
-    std::string text;
-};
-
-/// Lines with a mark at each point, or these marks alone. On a logarithmic axis values of zero and less stand at its
-/// lower end.
+/// On a logarithmic axis values of zero and less stand at its lower end.
 struct Curves {
     std::string title;
     std::string x_title; ///< with unit
     std::string y_title; ///< with unit
     bool log_x = false;
     bool log_y = false;
-    bool points_only = false;
     std::vector<Curve> curves;
-    std::vector<Mark> marks{};
+};
+
+/// Charts beside each other, row by row.
+struct Panels {
+    int columns = 1;
+    std::vector<Curves> panels; ///< at least one; the legend is that of the first
+};
+
+/// A change of two values, with its name at the head.
+struct Arrow {
+    std::string name;
+    std::array<double, 2> from, to; ///< x and y
+};
+
+struct Arrows {
+    std::string title, x_title, y_title; ///< axes with unit
+    std::vector<Arrow> arrows; ///< at least one
 };
 
 struct ErrorSeries {
@@ -52,9 +59,11 @@ struct ErrorOverTime {
     std::vector<ErrorSeries> series;
 };
 
-/// The drawing as text, the same for the same values. Throws InputError where a curve has no point to draw or not as
-/// many x as y.
+/// The drawing as text, the same for the same values. Throws InputError where a chart has nothing to draw, or a curve
+/// no point or not as many x as y.
 Plot plot_of(Curves const& chart);
+Plot plot_of(Panels const& chart);
+Plot plot_of(Arrows const& chart);
 Plot plot_of(ErrorOverTime const& chart);
 
 /// Draws to `stem`.svg and `stem`.png.

@@ -72,38 +72,43 @@ TEST_F(ChartFile, ErrorOverTime) {
 }
 
 TEST_F(ChartFile, Curves) {
-    Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, false, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
+    Curves chart{"t", "link [Mbit/s]", "PSNR [dB]", true, false, {{"tsar", {1, 10, 100}, {20, 25, 30}}}};
     std::string const text = drawn(chart);
     expect_has(text, "link [Mbit/s]");
     expect_has(text, ">100<"); // this is a mark of the axis
     chart.log_x = false;
-    chart.points_only = true;
     chart.curves[0].y = {0, 0, 0};
     drawn(chart);
 }
 
-TEST_F(ChartFile, BandsAndMarks) {
-    Curves chart{.title = "t",
-                 .x_title = "samples",
-                 .y_title = "error",
-                 .log_x = true,
-                 .log_y = true,
-                 .curves = {{"framelet", {1, 10}, {1e-2, 1e-3}, {5e-3, 4e-4}, {2e-2, 3e-3}}},
-                 .marks = {{20, "8 cores"}}};
-    expect_has(drawn(chart), "8 cores");
-    expect_has(plot_of(chart).data, "$band0 << EOD\n1 0.005 0.02\n10 4e-04 0.003\nEOD\n");
-    chart.curves[0].low.pop_back();
-    EXPECT_THROW(plot_of(chart), InputError);
+TEST_F(ChartFile, Panels) {
+    Curves const one{"first", "x", "y", true, false, {{"tsar", {1, 10}, {20, 25}}, {"afr", {1, 10}, {2, 2}}}};
+    Curves two = one;
+    two.title = "second";
+    two.curves[0].y = {7, 8};
+    Panels const chart{2, {one, two}};
+    std::string const text = drawn(chart);
+    expect_has(text, "first");
+    expect_has(text, "second");
+    expect_has(plot_of(chart).data, "$curve2 << EOD\n1 7\n10 8\nEOD\n"); // numbers go on from panel to panel
+}
+
+TEST_F(ChartFile, ArrowsHaveNamesAtTheirHeads) {
+    Arrows const chart{"t", "x", "y", {{"wind_mill, flown", {1, 2}, {4, 8}}}};
+    expect_has(drawn(chart), "wind_mill, flown");
+    expect_has(plot_of(chart).data, "1 2 3 6 4 8 \"wind_mill, flown\"\n"); // from, how far, to
 }
 
 TEST(Charts, BadInputIsRefused) {
-    Curves chart{"t", "x", "y", false, false, false, {}};
+    Curves chart{"t", "x", "y", false, false, {}};
     EXPECT_THROW(plot_of(chart), InputError);
     chart.curves = {{"a", {1, 2}, {1}}};
     EXPECT_THROW(plot_of(chart), InputError);
     chart.curves = {{"a", {1, NAN}, {NAN, 1}}};
     EXPECT_THROW(plot_of(chart), InputError);
     EXPECT_THROW(plot_of(ErrorOverTime{}), InputError);
+    EXPECT_THROW(plot_of(Panels{}), InputError);
+    EXPECT_THROW(plot_of(Arrows{}), InputError);
 }
 
 TEST(ChartStyle, EveryMethodHasItsOwnLook) {

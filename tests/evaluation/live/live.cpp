@@ -260,7 +260,7 @@ struct Measured {
 };
 
 constexpr std::size_t shown_between = FrameChoice::frames_at_once / 2;
-constexpr std::size_t trial_moments = 3;
+constexpr std::size_t trial_moments = 2;
 
 /// Index, within the row of frames from `first` on, of the one that was shown closest to the moment for which it was
 /// made. On the virtual clock every compared frame is punctual; in a real session a millisecond of the operating
@@ -274,7 +274,7 @@ std::size_t most_punctual(std::vector<LiveFrame> const& frames, std::size_t firs
 /// True if unsteadiness is measured at this moment. It takes three references a moment, so that it is measured at every
 /// other one and, where the virtual clock is compared with the run, at none.
 bool looks_at_steadiness(LiveOptions const& options, std::size_t moment) {
-    return !options.predicts && moment % 2 == 0;
+    return options.steadiness && !options.predicts && moment % 2 == 0;
 }
 
 /// Measures errors at some moments, spread over the run.
@@ -329,25 +329,44 @@ double trial_error(BenchScene& scene, LiveRun const& run, LiveOptions options) {
     return sum / static_cast<double>(looks);
 }
 
-/// Runs all choices that a rival has, each by itself, and measures the one that errs least.
+Measured measure_run(BenchScene& scene, std::string const& method, LiveRun const& run, LiveOptions const& options) {
+    Measured measured = error_figures(scene, method, run, options);
+    measured.figures.update(run_figures(run));
+    return measured;
+}
+
+double psnr_of(Measured const& measured) {
+    return measured.figures["psnr"];
+}
+
+/// Runs all choices that a rival has, each by itself, the one that errs least as often as is asked, and measures that.
 Measured best_run(BenchScene& scene, std::string const& method, LiveOptions const& options) {
     std::vector<RivalParts> const choices = rival_choices(method, {});
-    std::vector<std::unique_ptr<LiveRun>> runs;
+    std::vector<std::unique_ptr<LiveRun>> trials;
     std::vector<double> errors;
     for (RivalParts const& choice : choices) {
-        LiveRun& run = *runs.emplace_back(std::make_unique<LiveRun>());
+        LiveRun& run = *trials.emplace_back(std::make_unique<LiveRun>());
         run_programs(scene, method, choice, options, run);
         errors.push_back(choices.size() > 1 ? trial_error(scene, run, options) : 0);
     }
     std::size_t const best = best_choice(errors);
-    Measured measured = error_figures(scene, method, *runs[best], options);
+    std::vector<Measured> runs;
+    runs.push_back(measure_run(scene, method, *trials[best], options));
+    while (std::ssize(runs) < options.runs) {
+        LiveRun run;
+        run_programs(scene, method, choices[best], options, run);
+        runs.push_back(measure_run(scene, method, run, options));
+    }
+    std::ranges::sort(runs, {}, psnr_of);
+    Measured& measured = runs[runs.size() / 2];
     json& figures = measured.figures;
-    figures.update(run_figures(*runs[best]));
+    figures["psnr_low"] = psnr_of(runs.front());
+    figures["psnr_high"] = psnr_of(runs.back());
     if (has_spacing(method)) {
         figures["spacing"] = choices[best].spacing;
         figures["margin"] = choices[best].margin;
     }
-    return measured;
+    return std::move(measured);
 }
 
 /// Title of a method's row: the method, with the spacing that its frames had and an m for a margin.

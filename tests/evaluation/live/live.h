@@ -23,6 +23,8 @@ struct LiveOptions {
     LinkParameters link; ///< link to emulate; without limit and delay: none is emulated
     bool pinned = false; ///< server and viewer have a core each
     int moments = 4; ///< number of moments at which pictures are compared
+    int runs = 1; ///< of each method: figures are those of the run of median error
+    bool steadiness = true; ///< is measured, which takes three references at every other moment
     int samples_per_side = 4; ///< samples along a side of the reference's pixel: 1, 2, 4 or 8
     std::filesystem::path charts; ///< folder for pictures beside their reference; empty: none
     /// True: runs framelet's own methods on the virtual clock as well; needs `pinned` and no camera file.
@@ -33,7 +35,8 @@ struct LiveOptions {
 /// Seconds from the first picture on in which methods build up what they hold, and nothing is compared.
 inline constexpr double build_up_seconds = 1;
 
-/// Runs all methods, prints and returns their figures. Throws InputError or ConnectionError where a program fails.
+/// Runs all methods, prints and returns their figures; `psnr_low` and `psnr_high` are those of the worst and the best
+/// run. Throws InputError or ConnectionError where a program fails.
 nlohmann::json measure_live(BenchScene& scene, LiveOptions const& options);
 
 } // namespace framelet::bench

@@ -1,6 +1,8 @@
 #include "tests/evaluation/live/live_verbs.h"
 
 #include <cstdio>
+#include <iostream>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -9,6 +11,7 @@
 #include "common/command_line/number_range.h"
 #include "common/error.h"
 #include "server/scene/scene_import.h"
+#include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/method.h"
 #include "tests/evaluation/verb_options.h"
 #include "tests/loopback/replay.h"
@@ -25,6 +28,10 @@ void add_rival_options(CLI::App& verb, RivalParts& rivals) {
     verb.add_option("--spacing", rivals.spacing, "Pixels from sample to sample of whole frames")
         ->check(number_in(0.01, 1000.0));
     verb.add_option("--margin", rivals.margin, "Around the viewport, of its sides")->check(number_in(0.0, 10.0));
+}
+
+LinkParameters link_of(LiveVerbOptions const& options) {
+    return {.bits_per_second = 1e6 * options.megabits, .delay_seconds = 1e-3 * options.delay_ms};
 }
 
 } // namespace
@@ -44,6 +51,9 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_flag("--pinned", options.live.pinned, "Server and viewer on a core each");
     verb.add_option("--moments", options.live.moments, "Moments at which pictures are compared")
         ->check(CLI::Range(1, 1000))
+        ->capture_default_str();
+    verb.add_option("--runs", options.live.runs, "Runs of each method; figures are those of the median error")
+        ->check(CLI::Range(1, 99))
         ->capture_default_str();
     verb.add_option("--reference-samples", options.live.samples_per_side, "Along a side of a reference's pixel")
         ->check(CLI::IsMember({1, 2, 4, 8}))
@@ -105,6 +115,11 @@ void add_soak_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--seed", soak.seed, "Of what happens when")->capture_default_str();
 }
 
+void add_link_verb_options(CLI::App& verb, LiveVerbOptions& options) {
+    verb.add_option("PORT", options.link_to, "The server's, on this machine")->required()->check(CLI::Range(1, 65535));
+    add_link_options(verb, options.megabits, options.delay_ms);
+}
+
 json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
                  std::filesystem::path const& costs_file) {
     LiveOptions& live = options.live;
@@ -114,8 +129,7 @@ json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> co
     }
     live.costs = read_cost_table(costs_file);
     live.viewport = parse_size(options.size);
-    live.link.bits_per_second = 1e6 * options.megabits;
-    live.link.delay_seconds = 1e-3 * options.delay_ms;
+    live.link = link_of(options);
     json runs = json::array();
     options.crowd.viewport = live.viewport;
     options.crowd.seconds = live.seconds;
@@ -188,6 +202,14 @@ json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
         runs.push_back(run_soak(*load_bench_scene(file), soak));
     }
     return runs;
+}
+
+json answer_link(LiveVerbOptions& options) {
+    LinkEmulator const link(options.link_to, link_of(options));
+    std::cout << "listening on 127.0.0.1:" << link.port() << std::endl;
+    for (std::string line; std::getline(std::cin, line);) {
+    }
+    return {};
 }
 
 } // namespace framelet::bench

@@ -1,6 +1,7 @@
-// The verbs of real programs: `live`, what its processes run (`serve`, `look`), `soak`, and `replay`.
+// The verbs of real programs: `live`, what its processes run (`serve`, `look`), `soak`, `replay`, and `link`.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -28,6 +29,7 @@ struct LiveVerbOptions {
     LookOptions look;
     std::string server; ///< server's address for `look`, HOST:PORT
     std::filesystem::path recording;
+    std::uint16_t link_to = 0; ///< port of the server behind `link`
     SoakOptions soak;
     std::string soak_size = "320x180";
 };
@@ -39,6 +41,7 @@ void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
 void add_look_options(CLI::App& verb, LiveVerbOptions& options);
 void add_replay_options(CLI::App& verb, LiveVerbOptions& options);
 void add_soak_options(CLI::App& verb, LiveVerbOptions& options);
+void add_link_verb_options(CLI::App& verb, LiveVerbOptions& options);
 
 nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
                            std::filesystem::path const& costs_file);
@@ -49,5 +52,7 @@ nlohmann::json answer_replay(LiveVerbOptions& options);
 /// Runs `soak` on each scene; several share the time. `usual`: the scene where none is named. Throws ConnectionError
 /// where something has failed.
 nlohmann::json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual);
+/// Says at which port an emulated link begins, and lets bytes through until standard input ends.
+nlohmann::json answer_link(LiveVerbOptions& options);
 
 } // namespace framelet::bench

@@ -1,4 +1,4 @@
-// Draws the report's charts. In: figures. Out: pictures.
+// Draws the report's three charts. In: figures. Out: pictures.
 #pragma once
 
 #include <filesystem>
@@ -9,17 +9,14 @@
 
 namespace framelet::bench {
 
-/// Geometric mean and quartiles of positive numbers.
-struct Spread {
-    double low = 0, mean = 0, high = 0;
-};
-Spread spread_of(std::vector<double> values);
+/// An arrow for each scene of the real programs, from the best rival's PSNR and pictures a second to framelet's.
+Arrows live_chart(std::vector<nlohmann::json> const& live);
+/// A panel for each scene: PSNR of each method over the link's rate, and one over its round trip.
+Panels links_chart(std::vector<LinkRun> const& links, ReportOptions const& options);
+/// PSNR of each method's mean error over the number of cores.
+Curves cores_chart(std::vector<CoreRun> const& runs);
 
-/// Chart of error over the reference's own noise against the machine's speed: a curve for each method, over all scenes.
-Curves speed_chart(ReportFigures const& figures);
-
-/// Draws that chart, those of FLIP and unsteadiness likewise, of error against what links carry, and of the real
-/// programs, as PNG files.
-void draw_report_charts(ReportFigures const& figures, std::filesystem::path const& folder);
+/// Draws those of which there are figures as PNG files: live, links, cores.
+void draw_report_charts(ReportFigures const& figures, ReportOptions const& options);
 
 } // namespace framelet::bench

@@ -2,8 +2,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
-#include <set>
 #include <string>
 #include <vector>
 
@@ -14,57 +12,63 @@
 
 namespace framelet::bench {
 
-/// A scene and the camera file by which the viewer's own camera flies through it.
+/// A scene, and the camera file by which the viewer's own camera flies through it; without one it looks through the
+/// scene's camera.
 struct Flight {
     std::filesystem::path scene, camera;
 };
 
-struct ReportOptions {
-    std::filesystem::path folder = "report"; ///< folder that keeps each run's figures
-    std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< folder of RESULTS.md and pictures/
-    std::vector<double> machines; ///< speeds of machines, samples a displayed pixel and second
-    std::vector<double> links; ///< rates of links, bits a displayed pixel and second
-    double link_machine = 10; ///< machine of the runs over links, samples a displayed pixel and second
-    double link_delay = 0.02; ///< delay of links, seconds each way
-    std::vector<std::string> linked_methods; ///< methods of the study that also run over links
-    std::vector<std::filesystem::path> live_scenes, clock_scenes; ///< files
-    std::vector<Flight> flights; ///< flights on which the real programs go as well
-    std::vector<std::filesystem::path> narrow_scenes; ///< scenes that the real programs run over `narrow` too
-    LinkParameters narrow{.bits_per_second = 20e6, .delay_seconds = 0.05};
-    std::vector<Flight> walks; ///< through scenes that stand still, on the virtual clock
-    Viewport walk_viewport{640, 360};
-    std::vector<double> turns; ///< turning of the camera, degrees a second
-    std::vector<Viewport> clock_sizes; ///< sizes at which the virtual clock is compared with the wall clock
-    LiveOptions live;
-    Viewport feature_viewport{1280, 720};
-    bool quick = false; ///< quick, incomplete runs; the page says so
+/// A link: its rate, Mbit/s, and the time of a round trip over it, ms.
+struct LinkCase {
+    double megabits = 0, round_trip = 0;
+
+    bool operator==(LinkCase const&) const = default;
 };
 
-/// One method in one scene on one machine and link.
-struct ReportRun {
+struct ReportOptions {
+    std::filesystem::path folder = "report"; ///< keeps each run's figures
+    std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< folder of RESULTS.md and pictures/
+    std::vector<Flight> flights; ///< of the real programs, with no link between them
+    std::vector<std::filesystem::path> linked_scenes; ///< scenes that they run over links
+    std::vector<double> rates{5, 20, 100}; ///< Mbit/s, each with `usual.round_trip`
+    std::vector<double> round_trips{0, 20, 200}; ///< ms, each with `usual.megabits`
+    LinkCase usual{20, 20};
+    LiveOptions live; ///< how the real programs run; `runs` of them without a link, one over each
+    std::vector<std::filesystem::path> core_scenes; ///< scenes that run with each number of cores
+    std::vector<int> cores{2, 8, 32}; ///< servers' cores on the virtual clock
+    Viewport screen{1920, 1080}; ///< size of the picture for which these cores are
+    bool quick = false; ///< quick, incomplete runs, of any state of the source; the page says so
+};
+
+/// What the real programs did in one scene over one link.
+struct LinkRun {
+    LinkCase link;
+    nlohmann::json figures; ///< as `measure_live` returns them
+};
+
+/// One method in one scene with so many cores, on the virtual clock.
+struct CoreRun {
     std::string scene, method;
-    double machine = 0; ///< samples a displayed pixel and second
-    double link = 0; ///< bits a displayed pixel and second; 0: no limit
-    double noise = 0; ///< mean squared error of the reference itself
-    double mse = 0, flip = 0, unsteadiness = 0; ///< means over the reference times
-    double bits = 0; ///< bits sent, a displayed pixel and second
-    std::map<std::string, double> phases; ///< mean squared error while "moving", at an "event", when "settled"
+    int cores = 0;
+    double mse = 0;
 };
 
 struct ReportFigures {
-    std::vector<ReportRun> runs;
-    std::vector<ReportRun> turns; ///< runs while the camera turns: a "scene" is a scene at one speed
-    std::vector<nlohmann::json> live, narrow, clocks; ///< as measure_live returns them
-    std::vector<nlohmann::json> walks; ///< as measure_own_camera returns them
-    nlohmann::json features; ///< as measure_feature_costs returns them
-    std::string commit; ///< commit of this program
-    std::set<std::string> commits; ///< commits of the programs that made the figures
+    std::vector<nlohmann::json> live; ///< as `measure_live` returns them
+    std::vector<LinkRun> links;
+    std::vector<CoreRun> cores;
+    std::string commit; ///< of which all of them are
 };
 
-/// The machine of `options.machines` that is most like two cores at 1920x1080.
-double usual_machine(ReportOptions const& options);
+/// Shaded samples a second of one core where every sample has a shadow ray and a quarter mirror; the bundled scenes
+/// reach a third to a half of it.
+inline constexpr double core_rate = 5.3e6;
 
-/// Runs what `options.folder` does not have. Of `study` only scenes, methods, size, seconds and rate count.
+/// Each link of the options once, those of different rates first.
+std::vector<LinkCase> link_cases(ReportOptions const& options);
+
+/// Runs what `options.folder` does not have of this commit. Of `study` only methods, size, seconds and rate
+/// count. Throws InputError where the source has changes that are not committed, but for a quick report.
 ReportFigures measure_report(ReportOptions const& options, StudyOptions const& study);
 
 } // namespace framelet::bench

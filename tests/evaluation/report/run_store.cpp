@@ -20,7 +20,7 @@ json RunStore::get(std::string const& name, std::function<json()> const& run) {
     auto const file = folder_ / (name + ".json");
     ++done_;
     json kept = json::parse(std::ifstream(file), nullptr, false);
-    if (!kept.is_object() || !kept.contains("figures") || !kept.contains("commit")) {
+    if (!kept.is_object() || !kept.contains("figures") || kept.value("commit", "") != commit_) {
         std::fprintf(stderr, "%zu of %zu: %s\n", done_, expected_, name.c_str());
         kept = {{"commit", commit_}, {"figures", run()}};
         // The file has another name first, so that a run that is stopped half-way leaves no half file.
@@ -33,7 +33,6 @@ json RunStore::get(std::string const& name, std::function<json()> const& run) {
         }
         std::filesystem::rename(unfinished, file);
     }
-    commits_.insert(kept["commit"].get<std::string>());
     return kept["figures"];
 }
 

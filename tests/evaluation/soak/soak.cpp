@@ -21,6 +21,7 @@
 #include "tests/evaluation/soak/process_watch.h"
 #include "tests/evaluation/soak/soak_viewer.h"
 #include "tests/evaluation/soak/strangers.h"
+#include "tests/evaluation/soak/web_relay.h"
 #include "tests/loopback/process.h"
 
 namespace framelet::bench {
@@ -60,12 +61,26 @@ std::string server_port(test::ServerProcess const& server) {
     return server.address().substr(server.address().rfind(':') + 1);
 }
 
-std::vector<std::string> server_words(BenchScene const& scene, SoakOptions const& options) {
+/// True for a viewer that comes as a page does, in a WebSocket.
+bool is_in_browser(int viewer) {
+    return viewer % 3 == 2;
+}
+
+/// With which a server answers browsers.
+struct EmptyPage {
+    test::TemporaryFolder folder;
+
+    EmptyPage() { folder.write("index.html", ""); }
+};
+
+std::vector<std::string> server_words(BenchScene const& scene, SoakOptions const& options, EmptyPage const& page) {
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
     return {"--exposure",
             stops,
             "--insecure",
+            "--web-files",
+            page.folder.path().string(),
             "--session-memory",
             "1000000",
             "--max-sessions",
@@ -75,14 +90,15 @@ std::vector<std::string> server_words(BenchScene const& scene, SoakOptions const
 class Soak {
 public:
     Soak(BenchScene& scene, SoakOptions const& options)
-        : scene_(scene), options_(options), server_(scene.file.string(), server_words(scene, options)),
-          port_(static_cast<std::uint16_t>(std::stoi(server_port(server_)))), strangers_(port_),
+        : scene_(scene), options_(options), server_(scene.file.string(), server_words(scene, options, page_)),
+          port_(static_cast<std::uint16_t>(std::stoi(server_port(server_)))), relay_(port_), strangers_(port_),
           first_descriptors_(holdings().descriptors) {
         for (int i = 0; i < options.viewers; ++i) {
             // Links keep their own time; their stalls and steps go on until the last calm has had all the time that it
             // may take.
-            viewers_.push_back(
-                std::make_unique<SoakViewer>(port_, link_of(i, options.seconds + 2 * patience), options.viewport));
+            viewers_.push_back(std::make_unique<SoakViewer>(is_in_browser(i) ? relay_.port() : port_,
+                                                            link_of(i, options.seconds + 2 * patience),
+                                                            options.viewport));
         }
     }
 
@@ -342,8 +358,10 @@ private:
 
     BenchScene& scene_;
     SoakOptions const options_;
+    EmptyPage page_;
     test::ServerProcess server_;
     std::uint16_t const port_;
+    WebRelay relay_;
     Strangers strangers_;
     std::size_t const first_descriptors_;
     Clock::time_point const begun_ = Clock::now();

@@ -14,7 +14,7 @@
 namespace framelet::bench {
 
 struct SoakOptions {
-    int viewers = 8; ///< number of viewers that stay
+    int viewers = 8; ///< number of viewers that stay; every third comes as a page does, in a WebSocket
     double seconds = 3600;
     double storm_seconds = 6; ///< length of each round's storm, seconds; its calm takes as long as the pictures do
     double events = 1; ///< frequency of events in storms, as a multiple of the usual; 0: viewers only fly

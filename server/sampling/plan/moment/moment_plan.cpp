@@ -110,6 +110,13 @@ float spacing_error(float detail, float spacing) {
     return std::min(detail * missed_share(spacing), most_error);
 }
 
+/// Level of what the viewer has of this moment of a region, be it on its way or rendered, whatever the mirror makes of
+/// it; -1: nothing.
+int level_had(Region const& region, double moment_begun) {
+    bool const is_rendered = region.rendered >= moment_begun;
+    return std::max(region.taken.level, is_rendered ? shown_level(region.level, region.rays_per_sample) : -1);
+}
+
 /// Calls `visit` with each cell of a rectangle and how many pixels it has.
 template <class Visit>
 void for_each_cell(Mirror const& mirror, PixelRect const& rect, Visit visit) {
@@ -181,18 +188,43 @@ void MomentPlan::choose_horizon(RegionGrid const& regions, MomentBudget const& b
     solve(regions, budget, best);
 }
 
+/// Rates the regions in which anything has changed since the last call; all of them once the mirror has looked anew, or
+/// the picture's detail is another.
 void MomentPlan::find_gains(Mirror const& mirror, RegionGrid const& regions, MomentBudget const& budget) {
-    leaves_.assign(regions.size(), Leaf{});
+    constexpr float other_detail = 1.25f; // less does not change what is best
     std::span<std::uint32_t const> const visible = regions.visible();
-    tbb::parallel_for(std::size_t{0}, visible.size(), [&](std::size_t i) { add_detail(mirror, regions, visible[i]); });
+    bool rates_all = leaves_.size() != regions.size() || !knows(mirror, budget);
+    leaves_.resize(regions.size());
+    tbb::parallel_for(std::size_t{0}, visible.size(), [&](std::size_t i) {
+        std::uint32_t const index = visible[i];
+        Leaf& leaf = leaves_[index];
+        int const had = level_had(regions[index], budget.moment_begun);
+        leaf.is_rated = !rates_all && leaf.had == had && !mirror.has_changed(regions.rect_of(index), changes_);
+        leaf.had = had;
+        if (!leaf.is_rated) {
+            find_detail(mirror, regions, index);
+        }
+    });
     float detail = 0, shown = 0;
     for (std::uint32_t const index : visible) {
         detail += leaves_[index].detail;
         shown += leaves_[index].shown;
     }
-    mean_detail_ = shown > 0 ? detail / shown : unknown_detail;
-    tbb::parallel_for(std::size_t{0}, visible.size(),
-                      [&](std::size_t i) { add_gains(mirror, regions, visible[i], budget); });
+    float const mean = shown > 0 ? detail / shown : unknown_detail;
+    if (rates_all || mean > other_detail * mean_detail_ || mean_detail_ > other_detail * mean) {
+        mean_detail_ = mean;
+        rates_all = true;
+    }
+    tbb::parallel_for(std::size_t{0}, visible.size(), [&](std::size_t i) {
+        if (rates_all || !leaves_[visible[i]].is_rated) {
+            rate(mirror, regions, visible[i], budget);
+        }
+        find_costs(regions, visible[i], budget);
+    });
+    changes_ = mirror.changes();
+    looked_ = mirror.looked();
+    bias_ = budget.bias;
+    rests_ = budget.rests;
     stale_ = wrong_ = 0;
     for (std::uint32_t const index : visible) {
         stale_ += leaves_[index].stale;
@@ -200,28 +232,30 @@ void MomentPlan::find_gains(Mirror const& mirror, RegionGrid const& regions, Mom
     }
 }
 
-/// Sums up the detail that shows in one region.
-void MomentPlan::add_detail(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index) {
-    Leaf& leaf = leaves_[index];
-    for_each_cell(mirror, regions.rect_of(index), [&](Cell const& cell, float) {
-        leaf.detail += cell.is_shown() ? cell.detail : 0;
-        leaf.shown += cell.is_shown() ? 1.0f : 0.0f;
-    });
+/// True where the regions were rated for the same picture and wishes.
+bool MomentPlan::knows(Mirror const& mirror, MomentBudget const& budget) const {
+    return looked_ == mirror.looked() && bias_ == budget.bias && rests_ == budget.rests;
 }
 
-/// Finds what each choice gains and costs in one region.
-void MomentPlan::add_gains(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index,
-                           MomentBudget const& budget) {
-    Region const& region = regions[index];
+/// Sums up the detail that shows in one region.
+void MomentPlan::find_detail(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index) {
+    float detail = 0, shown = 0;
+    for_each_cell(mirror, regions.rect_of(index), [&](Cell const& cell, float) {
+        detail += cell.is_shown() ? cell.detail : 0;
+        shown += cell.is_shown() ? 1.0f : 0.0f;
+    });
+    leaves_[index].detail = detail;
+    leaves_[index].shown = shown;
+}
+
+/// Finds what each choice gains in one region.
+void MomentPlan::rate(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index,
+                      MomentBudget const& budget) {
     Leaf& leaf = leaves_[index];
-    // The viewer has what is on its way, or has been rendered of this moment, whatever the mirror makes of it.
-    int had = region.taken.level;
-    if (region.rendered >= budget.moment_begun) {
-        had = std::max(had, shown_level(region.level, region.rays_per_sample));
-    }
+    int const had = leaf.had;
     BiasWeights const weights(budget.bias);
     float const hole = std::max(weights.time, weights.space) * hole_error; // it is missing in space as in time
-    float const hidden_detail = leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_;
+    float const hidden_detail = detail_of(leaf);
     FloatLanes gains{};
     float stale_sum = 0, wrong_sum = 0;
     for_each_cell(mirror, regions.rect_of(index), [&](Cell const& cell, float pixels) {
@@ -268,7 +302,12 @@ void MomentPlan::add_gains(Mirror const& mirror, RegionGrid const& regions, std:
     store_lanes(gains, leaf.gain.data());
     leaf.stale = stale_sum;
     leaf.wrong = wrong_sum;
-    LevelCosts const bits = budget.mean_bits > 0 ? coded_bits(hidden_detail) : LevelCosts{};
+}
+
+/// Finds what each choice costs in one region.
+void MomentPlan::find_costs(RegionGrid const& regions, std::uint32_t index, MomentBudget const& budget) {
+    Leaf& leaf = leaves_[index];
+    LevelCosts const bits = budget.mean_bits > 0 ? coded_bits(detail_of(leaf)) : LevelCosts{};
     for (int level = regions.least_level(); level < sampling_levels; ++level) {
         auto const l = static_cast<std::size_t>(level);
         float const factor = budget.mean_bits > 0 ? bits[l] / budget.mean_bits : 1.0f;

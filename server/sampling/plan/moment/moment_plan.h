@@ -67,7 +67,8 @@ public:
     static constexpr std::size_t supersampled = sampling_levels, no_choice = supersampled + 1;
     static_assert(supersampled < std::tuple_size_v<ChoiceFigures>);
 
-    /// Replaces `rated` by disjoint patches, unsorted. `mirror` looks at the moment, with the viewport of `regions`.
+    /// Replaces `rated` by disjoint patches, unsorted. `mirror` looks at the moment, with the viewport of `regions`; it
+    /// is the same mirror in all calls, since what has not changed in it since the last one is not rated again.
     void find(Mirror const& mirror, RegionGrid const& regions, MomentBudget const& budget,
               std::vector<RatedPatch>& rated);
 
@@ -82,12 +83,18 @@ private:
         ChoiceFigures gain{}, cost{};
         float stale = 0, wrong = 0; ///< squared error summed over pixels: by changed looks, all of it
         float detail = 0, shown = 0; ///< summed over cells that show something; their number
+        int had = -1; ///< level of what is of this moment already; -1: none
+        bool is_rated = false; ///< nothing has changed since its gains were found
         std::size_t choice = no_choice; ///< best
     };
 
+    /// Mean detail of what shows in a region; where nothing does, of the whole picture.
+    float detail_of(Leaf const& leaf) const { return leaf.shown > 0 ? leaf.detail / leaf.shown : mean_detail_; }
     void find_gains(Mirror const& mirror, RegionGrid const& regions, MomentBudget const& budget);
-    void add_detail(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index);
-    void add_gains(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index, MomentBudget const& budget);
+    bool knows(Mirror const& mirror, MomentBudget const& budget) const;
+    void find_detail(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index);
+    void rate(Mirror const& mirror, RegionGrid const& regions, std::uint32_t index, MomentBudget const& budget);
+    void find_costs(RegionGrid const& regions, std::uint32_t index, MomentBudget const& budget);
     void sum_nodes(RegionGrid const& regions, MomentBudget const& budget);
     void choose_horizon(RegionGrid const& regions, MomentBudget const& budget, float least);
     double solve(RegionGrid const& regions, MomentBudget const& budget, float price);
@@ -97,6 +104,9 @@ private:
     float mean_detail_ = 0;
     float stale_ = 0, wrong_ = 0; ///< of all leaves
     std::vector<Leaf> leaves_; ///< of the regions
+    std::uint64_t changes_ = 0, looked_ = 0; ///< of the mirror, for which the leaves were rated
+    float bias_ = 0; ///< likewise
+    bool rests_ = false; ///< likewise
     std::vector<std::vector<Node>> nodes_; ///< by depth, above the regions
 };
 

@@ -44,7 +44,7 @@ MomentChecks MomentRefresh::look(RenderedMoment const& moment, double begun, dou
     if (probe_samples > 0) {
         checks.probe_spacing =
             grid_spacing(viewport, least_probe_spacing, most_probe_spacing, probe_cost, probe_samples);
-        list_probes(mirror_, cell_grid(cell_side, checks.probe_spacing, looks_taken_), probes);
+        list_probes(mirror_, cell_grid(cell_side, checks.probe_spacing, looks_taken_), moment.light_changes, probes);
     }
     return checks;
 }
@@ -61,10 +61,10 @@ void MomentRefresh::note_visibility(RenderedMoment const& moment, RayGrid const&
     }
 }
 
-void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
+void MomentRefresh::note_looks(RenderedMoment const& moment, std::span<Probe const> probes, ProbeLooks const& looks,
                                int probe_spacing) {
     if (mirror_.looks_at(view_of(moment))) {
-        is_checked_ = mirror_.mark(find_stale(mirror_, probes, luma, probe_spacing)) || is_checked_;
+        is_checked_ = mirror_.mark(find_stale(mirror_, probes, looks, probe_spacing)) || is_checked_;
     }
 }
 

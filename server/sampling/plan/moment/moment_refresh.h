@@ -24,6 +24,7 @@ struct RenderedMoment {
     SceneTime scene_time = 0;
     BodyMotions const* motions = nullptr; ///< of bodies, as the viewer knows them or would; not null
     bool moves_samples = true; ///< the viewer moves what it holds, from and to perspective cameras
+    bool light_changes = false; ///< also that of what stands: more is learnt of it
 };
 
 /// Positions at which what a moment really shows is compared with what the viewer would show of it.
@@ -54,9 +55,9 @@ public:
     void plan(RegionGrid const& regions, MomentBudget const& budget, std::vector<RatedPatch>& rated);
 
     /// Takes in what checks of a moment have shown: inverse depths at the positions of their grid, 1 / metres, row by
-    /// row (< 0: not known), or luma of the probes, in order. Ignored where another moment is looked at by now.
+    /// row (< 0: not known), or looks of the probes. Ignored where another moment is looked at by now.
     void note_visibility(RenderedMoment const& moment, RayGrid const& grid, std::span<float const> inverse_depth);
-    void note_looks(RenderedMoment const& moment, std::span<Probe const> probes, std::span<float const> luma,
+    void note_looks(RenderedMoment const& moment, std::span<Probe const> probes, ProbeLooks const& looks,
                     int probe_spacing);
 
     /// Notes that the viewer gets those framelets for which `sent` is not 0, in a batch of this number, with these

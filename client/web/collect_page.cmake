@@ -1,0 +1,16 @@
+# Makes the folder PAGE hold FILES and what is BUILT there, each beside its compressed one, and nothing else: what a server
+# finds there it serves. Called by cmake -P.
+cmake_minimum_required(VERSION 3.22)
+set(kept)
+foreach(file IN LISTS FILES BUILT)
+  get_filename_component(name ${file} NAME)
+  list(APPEND kept ${name})
+endforeach()
+file(GLOB there RELATIVE ${PAGE} ${PAGE}/*)
+foreach(name IN LISTS there)
+  if(NOT name IN_LIST kept)
+    file(REMOVE ${PAGE}/${name})
+  endif()
+endforeach()
+file(COPY ${FILES} DESTINATION ${PAGE})
+execute_process(COMMAND gzip -9nkf ${kept} WORKING_DIRECTORY ${PAGE} COMMAND_ERROR_IS_FATAL ANY)

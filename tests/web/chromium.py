@@ -1,0 +1,30 @@
+"""Starts Debian's Chromium for Selenium. Raises ImportError where something for that is missing."""
+import shutil
+
+from selenium import webdriver
+
+
+class Chromium(webdriver.Chrome):
+    def get(self, url):
+        """Loads a page. Its driver now and then says that it has, and goes on with the empty document before it."""
+        for _ in range(3):
+            super().get(url)
+            if url == 'about:blank' or self.execute_script('return document.URL') != 'about:blank':
+                return
+            print(f'the driver went on with an empty document; the browser says that it is at {self.current_url}')
+            super().get('about:blank')
+
+
+def start_chromium(width, height):
+    """A browser without a window, whose own one is of this size, and whose OpenGL is a program."""
+    if not shutil.which('chromium') or not shutil.which('chromedriver'):
+        raise ImportError('chromium or chromium-driver is missing')
+    options = webdriver.ChromeOptions()
+    for option in ('--headless=new', '--no-sandbox', f'--window-size={width},{height}', '--force-device-scale-factor=1',
+                   '--disable-dev-shm-usage', '--use-gl=angle', '--use-angle=swiftshader',
+                   '--enable-unsafe-swiftshader'):
+        options.add_argument(option)
+    options.accept_insecure_certs = True
+    options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
+    service = webdriver.chrome.service.Service(shutil.which('chromedriver'))
+    return Chromium(service=service, options=options)
