@@ -349,7 +349,7 @@ TEST(ResumeTicket, EndsWithAFarewell) {
     viewer.look(1);
     ASSERT_TRUE(viewer.watch());
     viewer.connection().send(Failure{"enough"});
-    EXPECT_FALSE(viewer.connection().receive());
+    EXPECT_EQ(viewer.connection().failure(), ""); // what had been sent before may still come
     ASSERT_TRUE(viewer.connect());
     EXPECT_FALSE(viewer.is_resumed);
 }

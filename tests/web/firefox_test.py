@@ -16,7 +16,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from page_case import PageCase, most_seconds, skip
+from page_case import PageCase, most_seconds, run_cases, skip
 
 program = shutil.which('firefox-esr') or shutil.which('firefox') or skip('firefox-esr is missing')
 
@@ -123,4 +123,4 @@ class Page(PageCase):
 
 
 if __name__ == '__main__':
-    unittest.main(argv=sys.argv[:1] + sys.argv[6:], verbosity=2)
+    run_cases()

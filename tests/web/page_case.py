@@ -209,3 +209,17 @@ class PageCase(unittest.TestCase):
     def draw_over(self, name):
         self.browser.execute_script('const o = document.getElementById("overlay"); o.value = arguments[0];'
                                     'o.dispatchEvent(new Event("change"))', name)
+
+
+def run_cases():
+    """Runs the cases that are named, or all, and once more those that fail, in a new browser: the exit code is that of
+    what fails twice. A browser and its driver lose a page or a click now and then; what failed is printed each time."""
+    run = lambda names: unittest.main('__main__', argv=[sys.argv[0], *names], verbosity=2, exit=False).result
+    first = run(sys.argv[6:])
+    if first.wasSuccessful():
+        return
+    failed = [case for case, _ in first.failures + first.errors]
+    are_cases = all(isinstance(case, unittest.TestCase) for case in failed)
+    names = [case.id().removeprefix('__main__.') for case in failed] if are_cases else sys.argv[6:]
+    print('AGAIN, as it failed:', *names, file=sys.stderr)
+    sys.exit(not run(names).wasSuccessful())

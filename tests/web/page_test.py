@@ -16,7 +16,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from page_case import PageCase, client_program, decibels, folder, most_seconds, read_ppm, skip, token
+from page_case import PageCase, client_program, decibels, folder, most_seconds, read_ppm, run_cases, skip, token
 try:
     from chromium import start_chromium
     from selenium import webdriver
@@ -469,4 +469,4 @@ class Page(PageCase):
 
 
 if __name__ == '__main__':
-    unittest.main(argv=sys.argv[:1] + sys.argv[6:], verbosity=2)
+    run_cases()
