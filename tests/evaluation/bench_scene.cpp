@@ -47,7 +47,7 @@ Camera with_lens(Camera camera, BenchScene const& scene) {
 } // namespace
 
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips,
-                                             std::filesystem::path const& environment) {
+                                             std::filesystem::path const& environment, LightMethod light) {
     auto loaded = std::make_unique<BenchScene>();
     loaded->file = file;
     loaded->name = file.stem().string();
@@ -61,12 +61,13 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->duration = animation_duration(loaded->scene, loaded->clips);
     loaded->render_scene = std::make_unique<RenderScene>(
         loaded->scene, environment.empty() ? std::nullopt : std::optional(Environment::load(environment)));
-    loaded->posed = std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene);
+    loaded->posed =
+        std::make_unique<PosedScene>(loaded->scene, loaded->clips, *loaded->render_scene, LightOptions{light});
     loaded->pose = loaded->posed->pose_of(0);
     loaded->scene_camera = loaded->scene.cameras.empty() ? none : 0;
     loaded->default_camera = default_camera(without_backdrop(scene_parts(loaded->scene, loaded->pose)));
     loaded->camera = camera_at(*loaded, 0);
-    loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera);
+    loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera, loaded->posed->path_light());
     return loaded;
 }
 

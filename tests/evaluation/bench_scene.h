@@ -45,7 +45,8 @@ enum class Clips { usual, none, baked };
 /// Loads the scene and poses it at time 0. The viewer looks through its first camera, or through the default one where
 /// it has none. `environment`: a map that lights it; empty: none. Throws InputError.
 std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, Clips clips = Clips::usual,
-                                             std::filesystem::path const& environment = {});
+                                             std::filesystem::path const& environment = {},
+                                             LightMethod light = LightMethod::direct);
 
 /// Moves everything, the camera included, to where it is at scene time `time`.
 void pose_at(BenchScene& scene, SceneTime time);

@@ -44,6 +44,7 @@ ReportFigures figures() {
     ReportFigures result;
     result.commit = "abc";
     result.live = {scene("stop", 33), scene("fox, flown", 27)};
+    result.lit = {scene("room", 33)};
     for (LinkCase const& link : link_cases({})) {
         result.links.push_back({link, scene("stop", link.round_trip > 100 ? 29 : 32)});
     }
@@ -105,6 +106,9 @@ TEST(Report, GoalsAreOfEveryScene) {
         << goals;
     EXPECT_TRUE(has_line(goals, "| motion to photon, display frames | <= 2 in each | 2 of 2; median 1.5, worst 1.5 "
                                 "(`stop`) | yes |"))
+        << goals;
+    EXPECT_TRUE(has_line(goals, "| full light: MSE over the best rival's | <= 1 in each | 1 of 1; median 0.50, worst "
+                                "0.50 (`room`) | yes |"))
         << goals;
     EXPECT_TRUE(has_line(goals, "| over links: MSE over the best rival's | <= 1 in each | 4 of 5; median 0.63, worst "
                                 "1.26 (`stop, 20 Mbit/s, 200 ms`) | no |"))

@@ -153,6 +153,9 @@ void choose_runs(VerbOptions& options) {
             report.flights.push_back({asset, camera});
         }
     }
+    report.lit_flights = {{scene_file("interior"), {}}, {scene_file("dusk"), {}}};
+    std::ranges::copy_if(report.flights, std::back_inserter(report.lit_flights),
+                         [](Flight const& flight) { return !flight.camera.empty(); });
 }
 
 json answer_pauses(VerbOptions& options) {

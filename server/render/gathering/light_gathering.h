@@ -35,7 +35,7 @@ public:
     std::size_t paths_beside(std::size_t samples) const { return share_.paths_beside(samples); }
 
     /// All of that, in parallel on the calling TBB arena. Returns how many paths that took.
-    std::size_t work(std::size_t most_paths);
+    std::size_t work(std::size_t most_paths, std::size_t samples = 0, double samples_took = 0);
 
 private:
     void refill();

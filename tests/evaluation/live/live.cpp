@@ -19,6 +19,7 @@
 #include "common/error.h"
 #include "common/files/image_io.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/path/path_picture.h"
 #include "tests/evaluation/charts/picture_sheet.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/evaluation/figure_table.h"
@@ -129,7 +130,8 @@ void run_programs(BenchScene const& scene, std::string const& method, RivalParts
     Programs const programs = programs_of(method, rivals, scene.file.string());
     char stops[40];
     std::snprintf(stops, sizeof stops, "%.9g", std::log2(static_cast<double>(scene.exposure)));
-    std::vector<std::string> server_options{"--exposure", stops, "--threads", options.pinned ? "1" : "0"};
+    std::vector<std::string> server_options{"--exposure", stops,        "--threads", options.pinned ? "1" : "0",
+                                            "--light",    options.light};
     auto server = [&] {
         OnCore const core(core_if(options.pinned, 0));
         return test::ServerProcess::of_program(programs.server, joined(programs.server_words, server_options));
@@ -195,6 +197,11 @@ Picture reference_of(BenchScene& scene, LiveFrame const& frame, LiveOptions cons
     pose_at(scene, frame.scene_time);
     Camera const camera =
         frame.scene_camera >= 0 ? scene.posed->camera(frame.scene_camera, frame.scene_time) : frame.camera;
+    if (PathLight const* const light = scene.posed->path_light()) {
+        PathOptions paths = light->options();
+        paths.paths = options.paths;
+        return to_display(render_paths(*scene.render_scene, camera, options.viewport, paths), scene.exposure);
+    }
     return render_picture(*scene.render_scene, camera, options.viewport, scene.exposure, options.samples_per_side);
 }
 
@@ -317,6 +324,7 @@ Measured error_figures(BenchScene& scene, std::string const& method, LiveRun con
 /// Rough mean squared error at a few of the moments: enough to tell a rival's choices apart.
 double trial_error(BenchScene& scene, LiveRun const& run, LiveOptions options) {
     options.samples_per_side = std::min(options.samples_per_side, 2);
+    options.paths = std::min(options.paths, 16);
     std::vector<std::size_t> const written = run.written_frames();
     std::size_t const count = written.size() / FrameChoice::frames_at_once;
     std::size_t const looks = std::min(count, trial_moments);
@@ -391,6 +399,11 @@ void print_prediction(json const& figures) {
 }
 
 } // namespace
+
+std::unique_ptr<BenchScene> load_live_scene(std::filesystem::path const& file, std::string const& light) {
+    bool const is_direct = parse_light_method(light) == LightMethod::direct;
+    return load_bench_scene(file, Clips::usual, {}, is_direct ? LightMethod::direct : LightMethod::reference);
+}
 
 json measure_live(BenchScene& scene, LiveOptions const& options) {
     std::printf("%s, %dx%d, %g s%s\n", scene.name.c_str(), options.viewport.width, options.viewport.height,

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,8 @@ struct LiveOptions {
     int runs = 1; ///< of each method: figures are those of the run of median error
     bool steadiness = true; ///< is measured, which takes three references at every other moment
     int samples_per_side = 4; ///< samples along a side of the reference's pixel: 1, 2, 4 or 8
+    std::string light = "direct"; ///< of all methods, as framelet-server takes it; else than direct: against paths
+    int paths = 64; ///< of each pixel of such a reference
     std::filesystem::path charts; ///< folder for pictures beside their reference; empty: none
     /// True: runs framelet's own methods on the virtual clock as well; needs `pinned` and no camera file.
     bool predicts = false;
@@ -34,6 +37,9 @@ struct LiveOptions {
 
 /// Seconds from the first picture on in which methods build up what they hold, and nothing is compared.
 inline constexpr double build_up_seconds = 1;
+
+/// Loads a scene for `measure_live`, where light other than direct is compared with that of paths.
+std::unique_ptr<BenchScene> load_live_scene(std::filesystem::path const& file, std::string const& light);
 
 /// Runs all methods, prints and returns their figures; `psnr_low` and `psnr_high` are those of the worst and the best
 /// run. Throws InputError or ConnectionError where a program fails.

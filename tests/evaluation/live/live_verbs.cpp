@@ -58,6 +58,12 @@ void add_live_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("--reference-samples", options.live.samples_per_side, "Along a side of a reference's pixel")
         ->check(CLI::IsMember({1, 2, 4, 8}))
         ->capture_default_str();
+    verb.add_option("--light", options.live.light, "Of all methods; of `full` the reference is made by paths")
+        ->check(CLI::IsMember({"direct", "full"}))
+        ->capture_default_str();
+    verb.add_option("--reference-paths", options.live.paths, "Of a pixel of such a reference")
+        ->check(CLI::Range(1, 1 << 16))
+        ->capture_default_str();
     verb.add_flag("--virtual", options.live.predicts,
                   "Also what the virtual clock says of framelet's methods; needs --pinned");
     CLI::Option* const viewers =
@@ -73,6 +79,7 @@ void add_serve_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("SCENE", options.serve.scene)->required();
     verb.add_option("--exposure", options.serve.exposure_ev, "Stops")->check(number_in(-32.0, 32.0));
     verb.add_option("--threads", options.serve.threads, "0: one a core");
+    verb.add_option("--light", options.serve.light, "As framelet-server takes it");
     add_rival_options(verb, options.serve.rivals);
 }
 
@@ -138,7 +145,7 @@ json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> co
             runs.push_back(measure_crowd(*load_bench_scene(file), options.crowd));
             continue;
         }
-        runs.push_back(measure_live(*load_bench_scene(file), live));
+        runs.push_back(measure_live(*load_live_scene(file, live.light), live));
     }
     return runs;
 }

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "common/cpu_clock.h"
+
 namespace framelet::bench {
 
 MethodStream::MethodStream(std::string name, BenchScene& scene, MethodSetup setup)
@@ -55,7 +57,9 @@ void MethodStream::render(PosedScene const&) {
     if (scene_camera_ >= 0) {
         view.camera = scene_.camera;
     }
+    double const begun = cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID);
     ServerStep step = method_->produce({scene_, turn_.present, turn_.now, view, 0, delivered_});
+    gather_light(step.samples, cpu_seconds_of(CLOCK_PROCESS_CPUTIME_ID) - begun);
     delivered_.clear();
     figures_.rays = step.samples;
     if (step.message.empty() && step.samples == 0) {
@@ -63,6 +67,13 @@ void MethodStream::render(PosedScene const&) {
     }
     std::scoped_lock const lock(mutex_);
     rendered_.push_back({std::move(step), view_, turn_.present});
+}
+
+/// Learns light for the share of time that framelet's own streams learn, where the scene has a light cache.
+void MethodStream::gather_light(std::size_t samples, double samples_took) {
+    if (LightGathering* const gathering = scene_.posed->light_gathering()) {
+        gathering->work(gathering->paths_beside(samples), samples, samples_took);
+    }
 }
 
 bool MethodStream::learn(PosedScene const&) {

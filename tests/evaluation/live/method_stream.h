@@ -32,6 +32,8 @@ public:
     TurnFigures const& learnt_figures() const override { return figures_; }
 
 private:
+    void gather_light(std::size_t samples, double samples_took);
+
     std::string const name_;
     BenchScene& scene_;
     MethodSetup setup_;

@@ -72,7 +72,7 @@ void serve_method(ServeOptions const& options) {
                                     ? static_cast<std::size_t>(options.threads)
                                     : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
-    auto const scene = load_bench_scene(options.scene);
+    auto const scene = load_bench_scene(options.scene, Clips::usual, {}, parse_light_method(options.light));
     scene->exposure = std::exp2(options.exposure_ev);
     ServerOptions server_options;
     server_options.port = 0;

@@ -16,6 +16,7 @@ struct ServeOptions {
     std::filesystem::path scene;
     float exposure_ev = 0; ///< stops
     int threads = 0; ///< 0: one a core
+    std::string light = "direct";
     RivalParts rivals; ///< parts of the rivals; the same for both programs
     CostTable costs;
 };

@@ -31,6 +31,14 @@ std::string live_section(ReportFigures const& figures, LiveOptions const& live) 
            live_table(figures.live);
 }
 
+std::string lit_section(ReportFigures const& figures, LiveOptions const& live) {
+    return printed(
+               "\n## With all light\n\nThe same programs with `--light full`; the rivals have the same light cache. "
+               "Errors are against %d paths a pixel, whose noise counts for all alike.\n\n",
+               live.paths) +
+           live_table(figures.lit);
+}
+
 std::string links_section(ReportFigures const& figures) {
     return "\n## Over links\n\nThe same programs with a link between them, one run each: PSNR in dB.\n\n"
            "![links](pictures/links.png)\n\n" +
@@ -60,6 +68,7 @@ std::string report_page(ReportFigures const& figures, ReportOptions const& optio
     page += "\n## Goals\n\n" + goals_table(figures) +
             "\nWhat stands in the way of those that are not met: [SHORTFALLS.md](SHORTFALLS.md).\n";
     page += figures.live.empty() ? "" : live_section(figures, options.live);
+    page += figures.lit.empty() ? "" : lit_section(figures, options.live);
     page += figures.links.empty() ? "" : links_section(figures);
     page += figures.cores.empty() ? "" : cores_section(figures, options, study);
     return wrapped(page);

@@ -51,8 +51,8 @@ json live_run(Flight const& flight, LiveOptions options, std::string const& name
     options.camera_file = flight.camera;
     bool const is_flown = !flight.camera.empty();
     std::string const scene = flight.scene.stem().string() + (is_flown ? "-flown" : "");
-    return store.get(scene + "-live-" + text_of(options.viewport) + name, [&] {
-        auto const loaded = load_bench_scene(flight.scene);
+    return store.get(scene + "-" + options.light + "-" + text_of(options.viewport) + name, [&] {
+        auto const loaded = load_live_scene(flight.scene, options.light);
         loaded->name += is_flown ? ", flown" : "";
         return measure_live(*loaded, options);
     });
@@ -106,10 +106,15 @@ ReportFigures measure_report(ReportOptions const& options, StudyOptions const& s
     figures.commit = commit_of_source(options.quick);
     std::vector<LinkCase> const links = link_cases(options);
     RunStore store(options.folder, figures.commit,
-                   options.flights.size() + options.linked_scenes.size() * links.size() +
+                   options.flights.size() + options.lit_flights.size() + options.linked_scenes.size() * links.size() +
                        options.core_scenes.size() * options.cores.size() * study.methods.size());
     for (Flight const& flight : options.flights) {
         figures.live.push_back(live_run(flight, options.live, "", store));
+    }
+    for (Flight const& flight : options.lit_flights) {
+        LiveOptions live = options.live;
+        live.light = "full";
+        figures.lit.push_back(live_run(flight, live, "", store));
     }
     for (auto const& scene : options.linked_scenes) {
         for (LinkCase const& link : links) {

@@ -29,6 +29,7 @@ struct ReportOptions {
     std::filesystem::path folder = "report"; ///< keeps each run's figures
     std::filesystem::path documents = FRAMELET_SOURCE_DIR "/docs"; ///< folder of RESULTS.md and pictures/
     std::vector<Flight> flights; ///< of the real programs, with no link between them
+    std::vector<Flight> lit_flights; ///< likewise, with full light, against paths
     std::vector<std::filesystem::path> linked_scenes; ///< scenes that they run over links
     std::vector<double> rates{5, 20, 100}; ///< Mbit/s, each with `usual.round_trip`
     std::vector<double> round_trips{0, 20, 200}; ///< ms, each with `usual.megabits`
@@ -54,7 +55,7 @@ struct CoreRun {
 };
 
 struct ReportFigures {
-    std::vector<nlohmann::json> live; ///< as `measure_live` returns them
+    std::vector<nlohmann::json> live, lit; ///< as `measure_live` returns them
     std::vector<LinkRun> links;
     std::vector<CoreRun> cores;
     std::string commit; ///< of which all of them are

@@ -178,6 +178,7 @@ std::string goals_table(ReportFigures const& figures) {
     text += goal_row("gap between pictures, 99th percentile, ms", own_figures(figures.live, "gap_p99_ms"), most, 50, 0);
     text += goal_row("motion to photon, display frames", own_figures(figures.live, "photon_ms", 1e-3 * display_rate),
                      most, 2, 1);
+    text += goal_row("full light: MSE over the best rival's", beside_best_rival(figures.lit, "mse", 1), most, 1, 2);
     text += goal_row("over links: MSE over the best rival's", beside_best_rival(figures.links), most, 1, 2);
     text += goal_row("virtual clock: MSE over the best rival's", beside_best_rival(figures.cores), most, 1, 2);
     return text;
