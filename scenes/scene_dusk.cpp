@@ -146,6 +146,7 @@ void add_car(GltfDocument& document, DuskParameters const& parameters) {
 
 GltfDocument make_dusk_scene(DuskParameters const& parameters) {
     GltfDocument document;
+    document.light = "full";
     add_evening(document);
     add_street(document);
     add_houses(document);

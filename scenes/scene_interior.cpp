@@ -136,6 +136,7 @@ void add_standing_lamp(GltfDocument& document, RoomMaterials const& materials, D
 
 GltfDocument make_interior_scene(InteriorParameters const& parameters) {
     GltfDocument document;
+    document.light = "full";
     add_sun(document, {0.30, 0.86, -0.52});
     document.lights.front().intensity *= 3; // beside which lamps are dim
     add_surroundings(document);

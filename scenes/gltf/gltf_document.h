@@ -85,6 +85,7 @@ struct GltfTrack {
 
 struct GltfDocument {
     std::string name;
+    std::string light; ///< how it wants to be lit, as --light says it, in the asset's extras; empty: as is usual
     std::vector<std::string> images; ///< PNG files
     std::vector<GltfMaterial> materials;
     std::vector<GltfMesh> meshes;

@@ -355,6 +355,9 @@ std::string write_glb(GltfDocument const& document) {
     Binary binary;
     Json json;
     json["asset"] = {{"version", "2.0"}, {"generator", "framelet-scenes"}};
+    if (!document.light.empty()) {
+        json["asset"]["extras"]["framelet_light"] = document.light;
+    }
     std::set<std::string> extensions;
     json["scene"] = 0;
     json["scenes"] = Json::array({Json{{"name", document.name}, {"nodes", root_nodes(document)}}});

@@ -152,6 +152,19 @@ bool asks_for_list(Options const& options) {
            std::filesystem::is_directory(options.scenes.front(), code);
 }
 
+/// Light as is asked for, else as the scene's files want it.
+LightOptions light_of(Options const& options, Scene const& scene) {
+    LightOptions light = options.light;
+    if (!options.has_light_method && !scene.light.empty()) {
+        try {
+            light.method = parse_light_method(scene.light);
+        } catch (InputError const& error) {
+            spdlog::warn("asset.extras.framelet_light: {}", error.what());
+        }
+    }
+    return light;
+}
+
 /// Loads scenes and environment. Throws InputError where the files are of no use.
 std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& progress) {
     auto const began = std::chrono::steady_clock::now();
@@ -170,8 +183,9 @@ std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& 
                          " no triangles, or none with an area");
     }
     std::vector<Index> clips = chosen_clips(scene, options.import);
+    LightOptions const light = light_of(options, scene);
     auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
-                                                options.exposure_ev, progress, options.light);
+                                                options.exposure_ev, progress, light);
     Scene const& s = loaded->scene;
     double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
     spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops; loaded in {:.1f} s", s.name,
@@ -248,7 +262,7 @@ void serve(Options& options) {
         event_log->begin({{scene_files.begin(), scene_files.end()},
                           options.environment ? std::filesystem::absolute(*options.environment).string() : "",
                           loaded->clips,
-                          options.light,
+                          loaded->light,
                           loaded->exposure,
                           stream.tone_curve,
                           stream.bias,

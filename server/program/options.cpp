@@ -41,7 +41,7 @@ void require_protection(Options const& options, bool insecure) {
 std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
     bool insecure = false;
-    std::string light = "direct";
+    std::string light;
     std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -78,7 +78,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
            "(full); or all of it by paths alone (reference): noisy while anything moves, and for a while after")
         ->type_name("direct|full|reference")
         ->check(readable_by(parse_light_method))
-        ->capture_default_str();
+        ->default_str("direct, unless the scene file asks for another");
     app.add_option("--sun-size", options.light.sun_degrees,
                    "Diameter of suns, for soft shadows with --light full and reference; 0: hard")
         ->type_name("DEGREES")
@@ -225,7 +225,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     try {
         parse_command_line(app, argc, argv);
         options.log = parse_log_format(log);
-        options.light.method = parse_light_method(light);
+        options.has_light_method = !light.empty();
+        if (options.has_light_method) {
+            options.light.method = parse_light_method(light);
+        }
         options.server.loop.stream.tone_curve = parse_tone_curve(tone_curve);
         if (!options.import.scene.empty() && options.scenes.size() > 1) {
             throw InputError("--scene chooses a scene of one file: give that file alone");

@@ -18,6 +18,7 @@ struct Options {
     ImportOptions import;
     std::optional<std::filesystem::path> environment;
     LightOptions light;
+    bool has_light_method = false; ///< else that of the scene's files counts, where they ask for one
     std::optional<float> exposure_ev; ///< stops; empty: from the scene
     int threads = 0; ///< 0: all cores
     int nice = default_nice; ///< of all threads

@@ -186,6 +186,7 @@ struct SceneCamera {
 
 struct Scene {
     std::string name;
+    std::string light; ///< by which method the files want it to be lit, a word of --light; empty: by any
     std::vector<std::shared_ptr<Picture const>> images; ///< bytes as stored in the file
     std::vector<Texture> textures;
     std::vector<Material> materials;

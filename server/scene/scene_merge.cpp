@@ -100,6 +100,8 @@ Scene merged_scene(std::vector<Scene> scenes, std::span<std::string const> words
     Scene out;
     out.name = joined_name(words);
     out.scene_files = 0;
+    bool const agree = std::ranges::all_of(scenes, [&](Scene const& scene) { return scene.light == scenes[0].light; });
+    out.light = agree && !scenes.empty() ? scenes[0].light : "";
     std::vector<std::filesystem::path> other_files;
     for (std::size_t s = 0; s < scenes.size(); ++s) {
         Scene& scene = scenes[s];

@@ -16,10 +16,11 @@ namespace framelet {
 struct LoadedScene {
     /// Without `exposure_ev` (stops) the exposure is chosen for what the first camera sees.
     LoadedScene(Scene imported, std::vector<Index> playing, std::optional<Environment> environment,
-                std::optional<float> exposure_ev, Progress const& progress, LightOptions const& light = {});
+                std::optional<float> exposure_ev, Progress const& progress, LightOptions const& lit_by = {});
 
     Scene const scene;
     std::vector<Index> const clips; ///< that play
+    LightOptions const light;
     RenderScene render_scene;
     PosedScene posed;
     Welcome welcome; ///< as `make_welcome`

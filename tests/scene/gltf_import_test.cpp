@@ -55,6 +55,25 @@ TEST(GltfImport, FlatNormalsWhereThereAreNone) {
     }
 }
 
+TEST(GltfImport, TheAssetSaysHowItWantsToBeLit) {
+    GltfWriter writer;
+    writer.array(triangle_positions, "VEC3");
+    std::string const text = writer.json(one_mesh(R"("attributes":{"POSITION":0})"));
+    auto const light_of = [&](std::string const& extras) {
+        std::string with_extras = text;
+        std::string const version = R"("version":"2.0")";
+        with_extras.insert(with_extras.find(version) + version.size(), extras);
+        return import_text(with_extras).light;
+    };
+    EXPECT_EQ(light_of(""), "");
+    EXPECT_EQ(light_of(R"(,"extras":{"framelet_light":"direct"})"), "direct");
+    for (char const* const other :
+         {R"(,"extras":{"framelet_light":3})", R"(,"extras":["framelet_light"])", R"(,"extras":null)",
+          R"(,"more":{"extras":{"framelet_light":"full"}})", R"(,"extras":{"extras":{"framelet_light":"full"}})"}) {
+        EXPECT_EQ(light_of(other), "") << other;
+    }
+}
+
 TEST(GltfImport, OfVeryManyCamerasTheFirstAreTaken) {
     std::string nodes = R"("nodes":[{"mesh":0})";
     std::string roots = "0";

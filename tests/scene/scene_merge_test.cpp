@@ -44,6 +44,15 @@ Scene one_of_everything(std::string const& file) {
     return scene;
 }
 
+TEST(SceneMerge, ScenesThatAgreeOnTheirLightKeepIt) {
+    std::vector<std::string> const words{"car", "bus"};
+    Scene car = one_of_everything("car"), bus = one_of_everything("bus");
+    car.light = "direct";
+    EXPECT_EQ(merged_scene({car, bus}, words).light, "");
+    bus.light = "direct";
+    EXPECT_EQ(merged_scene({car, bus}, words).light, "direct");
+}
+
 TEST(SceneMerge, EveryIndexIsOfItsOwnScene) {
     std::vector<std::string> const words{"car", "bus", "tram"};
     Scene const scene =

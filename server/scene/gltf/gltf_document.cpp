@@ -45,7 +45,8 @@ public:
     bool key(string_t& value) override {
         if (skipped_ == 0) {
             budget_.reserve(member_bytes + value.size(), 1);
-            skips_next_ = value == "extras";
+            bool const is_of_asset = open_.size() == 2 && open_.back() == asset_;
+            skips_next_ = value == "extras" && !is_of_asset;
             key_ = std::move(value);
         }
         return true;
@@ -84,6 +85,9 @@ private:
         }
         if (Json* const placed = place(std::move(empty))) {
             budget_.reserve(sizeof(Json) + bytes, 1);
+            if (open_.size() == 1 && key_ == "asset") {
+                asset_ = placed;
+            }
             open_.push_back(placed);
         } else if (skipped_ == 0) {
             skipped_ = depth_;
@@ -103,6 +107,7 @@ private:
     ImportBudget& budget_;
     Json root_;
     std::vector<Json*> open_; ///< the innermost last
+    Json const* asset_ = nullptr; ///< whose extras are kept
     std::string key_;
     bool skips_next_ = false; ///< what comes next is passed over
     std::size_t skipped_ = 0; ///< depth of what is being passed over; 0: nothing is

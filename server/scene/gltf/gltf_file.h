@@ -25,7 +25,7 @@ struct GltfFile {
     GltfFile(GltfFile const&) = delete; // its spans lead into its own memory
     GltfFile& operator=(GltfFile const&) = delete;
 
-    Json json; ///< without `extras`
+    Json json; ///< without `extras`, but for those of `asset`
     std::vector<std::span<std::byte const>> buffers; ///< as long as they say; empty where they cannot be read
     std::map<Index, std::span<std::byte const>> decoded_views; ///< buffer views that were compressed
     std::vector<std::vector<std::byte>> memory; ///< what these lie in

@@ -128,6 +128,7 @@ Scene import_gltf(std::filesystem::path const& path, SceneFolder const& folder, 
     if (Json::array_t const& scenes = list(json, "scenes"); !scenes.empty()) {
         scene.name = text(scenes[chosen], "name");
     }
+    scene.light = text(member(member(json, "asset"), "extras"), "framelet_light");
     return scene;
 }
 
