@@ -207,38 +207,49 @@ TEST(LightCache, BesideWhatWasMadeAndLearntFirstThereIsNoStep) {
     EXPECT_NEAR(shade(cache, first, fine), 3, 1.0f);
 }
 
-/// How far cells differ, at most, that have brought these shades in turn, around them as many again. What lights them
-/// is near.
-float most_apart(std::array<float, 2> const& shades, float paths, float noise) {
+/// The least and the most that is shown amid 16x16 cells of a floor, of which each has gathered `light(NUMBER)`.
+template <class Light>
+std::array<float, 2> least_and_most(Light light) {
     LightCache cache(scene_size);
     constexpr float cell = 1.0f / 16;
     std::vector<LightPlace> places;
     for (int i = 0; i < 256; ++i) {
         places.push_back(
             on_floor((static_cast<float>(i % 16) + 0.123f) * cell, (static_cast<float>(i / 16) + 0.123f) * cell));
-        GatheredLight light = gathered(shades[static_cast<std::size_t>(i % 2)], paths, noise);
-        light.nearness = 5 * paths;
-        teach(cache, places.back(), cell, light);
+        teach(cache, places.back(), cell, light(i));
     }
     std::vector<std::uint32_t> wanted;
     cache.list_wanted(1, wanted);
     for (int i = 0; i < 20; ++i) {
         cache.renew(cache.records().size());
     }
-    float least = INFINITY, most = 0;
+    std::array<float, 2> out{INFINITY, 0};
     for (int i = 0; i < 256; ++i) {
         if (std::abs(i % 16 - 8) < 4 && std::abs(i / 16 - 8) < 4) {
             float const shown = nearest(cache, places[static_cast<std::size_t>(i)], cell)->shown.all.g;
-            least = std::min(least, shown);
-            most = std::max(most, shown);
+            out = {std::min(out[0], shown), std::max(out[1], shown)};
         }
     }
-    return most - least;
+    return out;
 }
 
-TEST(LightCache, CellsAreAsSmoothAsTheirNeighboursWereFoundToBe) {
-    EXPECT_LT(most_apart({0.9f, 1.1f}, 100, 1), 0.1f) << "as far apart as noise makes them";
-    EXPECT_GT(most_apart({0.9f, 1.1f}, 10000, 1), 0.18f) << "farther than noise makes them";
+TEST(LightCache, CellsAreAsSmoothAsTheirPathsAreFew) {
+    auto const apart = [](float paths) {
+        auto const [least, most] = least_and_most([&](int i) { return gathered(i % 2 == 0 ? 0.9f : 1.1f, paths, 1); });
+        return most - least;
+    };
+    EXPECT_LT(apart(16), 0.05f);
+    EXPECT_GT(apart(10000), 0.18f);
+}
+
+TEST(LightCache, WhatRareBrightPathsBringIsSharedWithAllAround) {
+    auto const [least, most] = least_and_most([](int i) {
+        GatheredLight light = gathered(1, 16, 1);
+        light.excess = i % 16 == 7 ? 128.0f : 0.0f; // 16 of 4096 paths have brought half as much as all others
+        return light;
+    });
+    EXPECT_NEAR(least, 1.5f, 0.4f) << "and not 1";
+    EXPECT_NEAR(most, 1.5f, 0.4f) << "and not 9";
 }
 
 TEST(LightCache, SheetsOfOneCellHaveRecordsOfTheirOwn) {

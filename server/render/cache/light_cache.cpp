@@ -34,14 +34,29 @@ constexpr float remembered_paths = 4096;
 /// A path that brings the same but for rounding: relative.
 constexpr float same_light = 1e-3f;
 /// The least squared deviation, relative, that is expected of a record from what is coarser.
-constexpr float least_off = 1e-5f;
-/// Share of what a record has heard of its cells that it remembers the next time.
-constexpr float remembered_off = 0.9f;
+constexpr float least_off = 0.01f;
+/// Paths are bright that bring so many times what is seen around. What they bring beyond that is rare, and smooth: it
+/// is shown as a share of the rest, which is of as many paths as tell it.
+constexpr float bright = 8;
+constexpr float telling_paths = 1024;
 constexpr float telling_checks = 4; ///< fewer say little of a cell
 /// Cells in one that is around them, of a surface.
 constexpr float cells_around = 1 << (2 * parent_levels);
 constexpr std::size_t most_asked = 1 << 15; ///< a thread and round
 constexpr std::size_t recent_slots = 1 << 12;
+
+/// What bright paths add, as a share of the rest.
+float excess_of(GatheredLight const& gathered) {
+    float const rest = luminance(gathered.sum.all);
+    return rest > 0 ? gathered.excess / rest : 0;
+}
+
+/// Variance of a path, relative; at most what bright ones make of it.
+float variance_of(GatheredLight const& gathered) {
+    float const mean = luminance(gathered.sum.all) / gathered.paths;
+    float const variance = gathered.squares / gathered.paths - mean * mean;
+    return variance < bright * mean * mean ? std::max(variance / (mean * mean), 0.0f) : bright;
+}
 
 } // namespace
 
@@ -128,7 +143,7 @@ bool LightCache::look_up(LightPlace const& place, float cell_size, IncomingLight
         weight += add_level(place, level + 1, finer, true, own, out);
     }
     if (weight == 0 && everywhere_.paths > 0) {
-        out.add(everywhere_.sum, 1 / everywhere_.paths);
+        out.add(everywhere_.sum, (1 + excess_of(everywhere_)) / everywhere_.paths);
         return true;
     }
     if (!(weight > 0)) {
@@ -331,8 +346,6 @@ void LightCache::outdate(LightRecord& record, float change) {
         float const left = 1 / (1 + record.gathered.paths * change);
         record.gathered.scale(left);
         record.told *= left;
-        record.off *= left;
-        record.off_cells *= left;
         refresh(record);
     }
 }
@@ -362,95 +375,89 @@ void LightCache::add(std::uint32_t number, GatheredLight const& gathered, float 
     }
 }
 
+float LightCache::bright_path(std::uint32_t number) const {
+    for (int up = 0; up < 2 && number != nothing; ++up) { // farther: what is dark by chance is not to stay so
+        number = cells_[number].parent;
+    }
+    float shade = 0;
+    if (number != nothing && cells_[number].known) {
+        shade = luminance(cells_[number].shown.all);
+    } else if (everywhere_.paths > 0) {
+        shade = luminance(everywhere_.sum.all) / everywhere_.paths;
+    }
+    return shade > 0 ? bright * shade : INFINITY;
+}
+
 /// What coarser records show at a record's place; false where they know nothing.
-bool LightCache::find_coarse(LightRecord const& record, IncomingLight& out) const {
+bool LightCache::find_coarse(LightRecord const& record, IncomingLight& out, float& excess) const {
     out = {};
+    excess = excess_of(everywhere_);
     if (record.parent == nothing) {
         return false;
     }
     LightRecord const& parent = cells_[record.parent];
-    float weight = 0;
+    float weight = 0, excesses = 0;
     LightCells::Around around;
     cells_.visit_around(record.place, LightCells::level_in(parent.key), around,
                         [&](std::uint32_t number, float w, bool) {
                             if (LightCells::is_record(number) && cells_[number].known) {
-                                out.add(cells_[number].shown, w);
+                                out.add(cells_[number].shown, w / (1 + cells_[number].excess));
+                                excesses += w * cells_[number].excess;
                                 weight += w;
                             }
                         });
     if (weight > least_weight) {
         IncomingLight const sum = std::exchange(out, {});
         out.add(sum, 1 / weight);
+        excess = excesses / weight;
     } else if (parent.known) {
-        out = parent.shown;
+        out.add(parent.shown, 1 / (1 + parent.excess));
+        excess = parent.excess;
     }
     return weight > least_weight || parent.known;
 }
 
-/// Shows w * own + (1 - w) * coarse, w = t^2 / (t^2 + v / n): v / n is the squared error of the mean of its own n
-/// paths, t^2 how far it may be off what is coarser: as far as its parent's other cells were found to be (empirical
-/// Bayes), at first by the bound of [Ward 1988], where what is lit from as near as R changes by dx / R.
-/// `tells`: its parent learns how far this one is off.
-void LightCache::refresh(LightRecord& record, bool tells) {
+/// Shows w * own + (1 - w) * coarse, w = t^2 / (t^2 + v / n): v / n is the squared error of the mean of its n paths,
+/// t^2 how far it may be off what is coarser. Where light comes from as near as R it changes by dx / R [Ward 1988].
+void LightCache::refresh(LightRecord& record) {
     constexpr float typical_offset = 0.5f; // of a record from what is coarser, in cells of the parent
-    // Of which the variance is that of what is around: were it a place's own, places that missed rare bright paths
-    // would count most. Were there many, a place of which one path has brought nearly all would be believed.
-    constexpr float assumed_paths = 16;
-    constexpr float assumed_cells = 0.5f; // for which the bound counts
-    auto const variance = [](GatheredLight const& g) {
-        float const mean = luminance(g.sum.all) / g.paths;
-        return std::max(g.squares / g.paths - mean * mean, 0.0f);
-    };
     GatheredLight const& own = record.gathered;
-    LightRecord* const parent = record.parent == nothing ? nullptr : &cells_[record.parent];
+    LightRecord const* const parent = record.parent == nothing ? nullptr : &cells_[record.parent];
     GatheredLight const& around = parent != nullptr && parent->gathered.paths > 0 ? parent->gathered : everywhere_;
     IncomingLight coarse;
-    bool const is_in_known = find_coarse(record, coarse);
+    bool const is_in_known = find_coarse(record, coarse, record.excess);
     if (!is_in_known && around.paths > 0) {
         coarse.add(around.sum, 1 / around.paths);
     }
     record.known = own.paths > 0 || is_in_known;
-    record.shown = coarse;
+    record.shown = {};
+    record.shown.add(coarse, 1 + record.excess);
     record.error = 1;
     if (!(own.paths > 0)) {
         return;
     }
-    float const mean = luminance(own.sum.all) / own.paths;
-    float const shade = std::max({luminance(coarse.all), mean, 1e-20f});
-    float squares = variance(own) * own.paths, count = own.paths;
+    record.excess += own.paths / (own.paths + telling_paths) * (excess_of(own) - record.excess);
+    float error = variance_of(own) / own.paths; // squared, relative
+    float share = 1;
     if (around.paths > 0) {
-        squares += variance(around) * assumed_paths;
-        count += assumed_paths;
-    }
-    float const error = squares / (count * own.paths) / (shade * shade);
-    float off = 1; // squared, relative
-    if (is_in_known) {
+        // Places that missed rare bright paths have little variance of their own.
+        error = std::max(error, variance_of(around) / own.paths);
         float const bound =
-            std::min(typical_offset * cells_.size(LightCells::level_in(parent->key)) * own.nearness / own.paths, 1.0f);
-        off = (assumed_cells * bound * bound + parent->off) / (assumed_cells + parent->off_cells);
-        float const others = 1 - record.told / parent->gathered.paths; // that are in what is coarse
-        if (tells && others > 0.5f) {
-            float const apart = (mean - luminance(coarse.all)) / (shade * others);
-            float const said = bound * bound / (bound * bound + error);
-            parent->off += said * said * (apart * apart - error);
-            parent->off_cells += said * said;
-        }
+            is_in_known ? typical_offset * cells_.size(LightCells::level_in(parent->key)) * own.nearness / own.paths
+                        : 1;
+        float const off = std::clamp(bound * bound, least_off, 1.0f);
+        share = off / (off + error);
     }
-    off = std::clamp(off, least_off, 1.0f);
-    float const share = around.paths > 0 ? off / (off + error) : 1.0f;
     record.shown = {};
-    record.shown.add(coarse, 1 - share);
-    record.shown.add(own.sum, share / own.paths);
-    record.error = std::min(std::sqrt(share * error) * shade / std::max(luminance(record.shown.all), 1e-20f), 1.0f);
+    record.shown.add(coarse, (1 - share) * (1 + record.excess));
+    record.shown.add(own.sum, share / own.paths * (1 + record.excess));
+    record.error = std::min(std::sqrt(share * error), 1.0f);
 }
 
 /// Brings the next of the records that are in use up to date with what is coarser.
 void LightCache::renew(std::size_t count) {
     for (; count > 0 && next_renewed_ < in_use_.size(); --count) {
-        LightRecord& record = cells_[in_use_[next_renewed_++]];
-        record.off *= remembered_off;
-        record.off_cells *= remembered_off;
-        refresh(record, true);
+        refresh(cells_[in_use_[next_renewed_++]]);
     }
     if (next_renewed_ == in_use_.size()) {
         next_renewed_ = 0;

@@ -40,6 +40,9 @@ public:
     /// luminance that the first of them has brought.
     void add(std::uint32_t record, GatheredLight const& gathered, float first);
 
+    /// Luminance from which on a path of a record is bright: what it brings more is shared with all around.
+    float bright_path(std::uint32_t record) const;
+
     /// Brings so many more of the records that are in use up to date with what is known around them.
     void renew(std::size_t count);
 
@@ -75,8 +78,8 @@ private:
     float add_level(LightPlace const& place, int level, float share, bool asks, LookedUp& own, IncomingLight& out);
     std::uint32_t make(LightPlace const& place, int level);
     void forget_oldest();
-    bool find_coarse(LightRecord const& record, IncomingLight& out) const;
-    void refresh(LightRecord& record, bool tells = false);
+    bool find_coarse(LightRecord const& record, IncomingLight& out, float& excess) const;
+    void refresh(LightRecord& record);
     void judge_checks(std::uint32_t record);
     void outdate(LightRecord& record, float change);
     void list_in_use();

@@ -48,6 +48,7 @@ struct GatheredLight {
     IncomingLight sum; ///< of all paths
     float squares = 0; ///< sum of the squared luminance of paths
     float nearness = 0; ///< sum of 1 / metres to what the first rays met
+    float excess = 0; ///< luminance of bright paths beyond what counts of them in `sum`
     float paths = 0;
 
     void scale(float share) {
@@ -56,12 +57,14 @@ struct GatheredLight {
         sum.add(all, share);
         squares *= share;
         nearness *= share;
+        excess *= share;
         paths *= share;
     }
     void add(GatheredLight const& other) {
         sum.add(other.sum, 1);
         squares += other.squares;
         nearness += other.nearness;
+        excess += other.excess;
         paths += other.paths;
     }
 };
@@ -71,6 +74,7 @@ struct LightRecord {
     CellKey key;
     LightPlace place; ///< from which paths are gathered
     IncomingLight shown; ///< smooth first: where little is gathered it is its parent's
+    float excess = 0; ///< of `shown`: what bright paths add to the rest, as a share of that
     bool known = false; ///< `shown` says something
     std::uint32_t used = 0; ///< when it was looked up last, in rounds
     std::uint32_t uses = 0; ///< how often since it was worked on
@@ -88,9 +92,6 @@ struct LightRecord {
     /// there.
     float change = 0;
     float followed = 0; ///< `change` of its parent of which it knows
-    /// Sum over cells in it of how far they are off what it and its neighbours show there, squared and relative, beyond
-    /// the noise; and how many these are. What was heard long ago counts less.
-    float off = 0, off_cells = 0;
 };
 static_assert(sizeof(LightRecord) <= 200);
 

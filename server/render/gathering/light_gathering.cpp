@@ -62,8 +62,9 @@ struct Gathering {
     }
 };
 
-/// Follows a packet of paths from the place of a record; sets `first` to the luminance of the first.
-GatheredLight gather_packet(PathScene const& scene, PathOptions const& options, LightRecord const& record,
+/// Follows a packet of paths from the place of a record; sets `first` to the luminance of the first. `bright`:
+/// luminance beyond which what a path brings is kept apart.
+GatheredLight gather_packet(PathScene const& scene, PathOptions const& options, LightRecord const& record, float bright,
                             float& first) {
     Gathering gathering;
     for (int i = 0; i < lanes; ++i) {
@@ -77,10 +78,13 @@ GatheredLight gather_packet(PathScene const& scene, PathOptions const& options, 
     out.paths = lanes;
     for (int i = 0; i < lanes; ++i) {
         Vec3 const lean = brought.lean.get(i);
-        out.sum.add(
-            {brought.all.get(i), brought.reflected.get(i), lean - facet * glm::dot(facet, lean), brought.open[i]}, 1);
         float const shade = luminance(brought.all.get(i));
-        out.squares += shade * shade;
+        float const part = shade > bright ? bright / shade : 1;
+        out.sum.add({brought.all.get(i) * part, brought.reflected.get(i) * part,
+                     (lean - facet * glm::dot(facet, lean)) * part, brought.open[i]},
+                    1);
+        out.excess += shade * (1 - part);
+        out.squares += shade * part * shade * part;
         out.nearness += brought.nearness[i];
     }
     out.sum.lean = glm::transpose(light_frame(scene.scene, record.place.frame).rotation) * out.sum.lean;
@@ -156,7 +160,8 @@ void LightGathering::follow(std::size_t packet) {
     Laps laps;
     if (packet < gathers_.size()) {
         LightRecord const& record = cache_.records()[gathers_[packet]];
-        gathered_[packet] = gather_packet(light_.scene(), options_, record, first_[packet]);
+        gathered_[packet] =
+            gather_packet(light_.scene(), options_, record, cache_.bright_path(gathers_[packet]), first_[packet]);
     } else {
         follow_check(packet - gathers_.size());
     }
@@ -189,10 +194,10 @@ void LightGathering::finish(std::size_t samples, double samples_took) {
     cache_.renew(renewed_share * gathers_.size());
 }
 
-std::size_t LightGathering::work(std::size_t most_paths) {
+std::size_t LightGathering::work(std::size_t most_paths, std::size_t samples, double samples_took) {
     std::size_t const packets = plan(most_paths);
     tbb::parallel_for(std::size_t{0}, packets, [&](std::size_t i) { follow(i); });
-    finish();
+    finish(samples, samples_took);
     return checks_.size() + gathers_.size() * lanes;
 }
 

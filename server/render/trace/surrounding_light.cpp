@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include <glm/common.hpp>
@@ -16,7 +17,7 @@ namespace {
 
 /// Size of the cells that are looked up, in pixels of the picture.
 constexpr float cell_pixels = 12;
-/// Lanes whose normals differ by less, and that lie no farther off one plane than this share of their extent, are
+/// Lanes whose normals differ by less, and that lie no farther off one plane than this share of their distance, are
 /// looked up together.
 constexpr float same_cosine = 0.98f;
 constexpr float same_plane = 0.02f;
@@ -53,21 +54,25 @@ void add_environment(PreparedScene const& scene, SurfacePacket const& s, LaneMas
     });
 }
 
-/// True where all lanes lie on one plane of one instance, or of what stands still.
-bool is_one_plane(PreparedScene const& scene, HitPacket const& hits, SurfacePacket const& s) {
-    Vec3 const origin = s.position.get(0), normal = s.geometric_normal.get(0);
-    Instance const& instance = scene.instances[hits.instance[0]];
+/// Those of `lanes_left`, all of a block, that lie on one plane with the first of them: of one instance, or of what
+/// stands still.
+LaneMask lanes_on_plane(PreparedScene const& scene, HitPacket const& hits, SurfacePacket const& s,
+                        LaneMask lanes_left) {
+    int const first = std::countr_zero(lanes_left);
+    Vec3 const origin = s.position.get(first), normal = s.geometric_normal.get(first);
+    Instance const& instance = scene.instances[hits.instance[first]];
     bool const moves = instance.moves();
-    float most_apart = 0, least_cosine = 1;
-    bool same = true;
-    for (int i = 1; i < lanes; ++i) {
-        most_apart = std::max(most_apart, std::abs(glm::dot(s.position.get(i) - origin, normal)));
-        least_cosine = std::min(least_cosine, glm::dot(s.geometric_normal.get(i), normal));
+    LaneMask out = lanes_left & -lanes_left; // itself, were its normal none
+    for_each_lane(lanes_left, [&](int i) {
         Instance const& other = scene.instances[hits.instance[i]];
-        same = same && (moves ? &other == &instance : !other.moves());
-    }
-    float const extent = glm::length(s.position.get(lanes - 1) - origin);
-    return same && least_cosine > same_cosine && most_apart <= same_plane * extent;
+        Vec3 const away = s.position.get(i) - origin;
+        if ((moves ? &other == &instance : !other.moves()) &&
+            glm::dot(s.geometric_normal.get(i), normal) > same_cosine &&
+            std::abs(glm::dot(away, normal)) <= same_plane * glm::length(away)) {
+            out |= 1u << i;
+        }
+    });
+    return out;
 }
 
 /// Turns what arrives at a lane's facet into what its shading normal and its lobe get of it.
@@ -86,6 +91,14 @@ void set_lane(PreparedScene const& scene, SurfacePacket const& s, int i, Incomin
                          ? scene.environment.specular(lobe_middle(s, i), s.roughness[i]) * (in.open / share)
                          : Vec3(0);
     out.specular.set(i, in.reflected + sky);
+}
+
+/// The lane in the middle of some, which are not none: in Morton order, so that it is not at their edge.
+int middle_lane(LaneMask some) {
+    for (int before = std::popcount(some) / 2; before > 0; --before) {
+        some &= some - 1;
+    }
+    return std::countr_zero(some);
 }
 
 IncomingLight look_up(PreparedScene const& scene, HitPacket const& hits, SurfacePacket const& s, int i,
@@ -131,18 +144,20 @@ void find_surrounding_light(PreparedScene const& scene, HitPacket const& hits, S
                             Footprint const& footprint, SurroundingLight& out) {
     LaneMask unknown = lit;
     if (scene.light_cache != nullptr) {
-        out.is_plane = footprint.is_block && lit == all_lanes && is_one_plane(scene, hits, s);
-        if (out.is_plane && look_up_corners(scene, hits, s, footprint.pixels, out)) {
-            return;
-        }
-        for_each_lane(lit, [&](int i) {
-            bool known = false;
-            IncomingLight const in = look_up(scene, hits, s, i, footprint.pixels, known);
-            if (known) {
-                set_lane(scene, s, i, in, out);
-                unknown &= ~(1u << i);
+        for (LaneMask left = lit; left != 0;) {
+            LaneMask const together = footprint.is_block ? lanes_on_plane(scene, hits, s, left) : left & -left;
+            out.is_plane = together == all_lanes;
+            if (out.is_plane && look_up_corners(scene, hits, s, footprint.pixels, out)) {
+                return;
             }
-        });
+            bool known = false;
+            IncomingLight const in = look_up(scene, hits, s, middle_lane(together), footprint.pixels, known);
+            if (known) {
+                for_each_lane(together, [&](int i) { set_lane(scene, s, i, in, out); });
+                unknown &= ~together;
+            }
+            left &= ~together;
+        }
     }
     add_environment(scene, s, unknown, out);
 }
