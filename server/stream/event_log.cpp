@@ -133,8 +133,9 @@ void EventLog::begin(ServedScene const& served) {
                                       {"bias", served.bias},
                                       {"batch_framelets", served.batch_framelets}};
     std::string const text = std::string(first_line) + "\n" + line.dump() + "\n";
-    static_cast<void>(::ftruncate(::fileno(out_.get()), 0)); // a device has no length
-    if (std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() || std::fflush(out_.get()) != 0) {
+    bool const is_cut = ::ftruncate(::fileno(out_.get()), 0) == 0 || errno == EINVAL; // a device has no length
+    if (!is_cut || std::fwrite(text.data(), 1, text.size(), out_.get()) != text.size() ||
+        std::fflush(out_.get()) != 0) {
         note_failure();
     }
 }
