@@ -50,6 +50,7 @@ void Session::close(std::string const& farewell, bool again) {
 }
 
 void Session::end(std::string const& reason, bool again) {
+    bool has_spoken = false;
     {
         std::scoped_lock const lock(mutex_);
         parked_ = false;
@@ -57,8 +58,11 @@ void Session::end(std::string const& reason, bool again) {
             return;
         }
         open_ = false;
+        has_spoken = has_spoken_;
     }
-    stream_->send(Failure{reason, again});
+    if (has_spoken) { // a browser that keeps a connection for later would take it for an answer
+        stream_->send(Failure{reason, again});
+    }
     stream_->close_after_sending();
     events_.ended(reason);
 }
@@ -244,7 +248,8 @@ std::optional<std::string> Session::overdue(std::chrono::steady_clock::time_poin
     }
     auto const waiting = now - last_progress_;
     if (!open_) {
-        return waiting > hello_timeout ? std::optional("no Hello within the time for it") : std::nullopt;
+        auto const most = stream_->asks_for_files() ? files_timeout : hello_timeout;
+        return waiting > most ? std::optional("no Hello within the time for it") : std::nullopt;
     }
     if (camera_number_ == 0) {
         return waiting > camera_timeout ? std::optional("no camera within the time for it") : std::nullopt;
@@ -260,6 +265,7 @@ void Session::receive(Message message) {
         if (ended_) {
             return; // by another thread, while this message was on its way here
         }
+        has_spoken_ = true;
         open = open_;
     }
     if (!open) {

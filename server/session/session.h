@@ -39,6 +39,7 @@ public:
 
     /// Most time from the start of reading to Hello, a TLS handshake between them.
     static constexpr std::chrono::seconds hello_timeout{5};
+    static constexpr std::chrono::seconds files_timeout{60}; ///< for a page and its files, over a slow link
     /// Most time from Welcome to the first camera: a viewer that looks nowhere takes the place of one that would.
     static constexpr std::chrono::seconds camera_timeout{10};
     /// A viewer that owes an acknowledgement for so long is taken for gone.
@@ -126,6 +127,7 @@ private:
     mutable std::mutex mutex_;
     bool started_ = false;
     bool open_ = false; ///< handshake done, not ended
+    bool has_spoken_ = false; ///< a message has come
     bool ended_ = false;
     bool parked_ = false; ///< ended by a cut, and may be gone on with
     std::shared_ptr<Session> earlier_; ///< the session to be taken over; it has none itself

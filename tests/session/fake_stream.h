@@ -12,13 +12,17 @@ class FakeStream : public FramedStream {
 public:
     void start(Handlers handlers, std::size_t) override { handlers_ = std::move(handlers); }
     void set_max_body(std::size_t) override {}
-    std::size_t send(Message const&) override { return 0; }
+    std::size_t send(Message const&) override {
+        ++sent;
+        return 0;
+    }
     std::size_t unsent_bytes() const override { return 0; }
     void close_after_sending() override {}
     void close() override { is_closed = true; }
     std::string peer() const override { return "nobody"; }
 
     bool was_cut() const override { return was_cut_; }
+    bool asks_for_files() const override { return is_browser; }
 
     void bring(Message const& message) { handlers_.on_message(message); }
     /// Ends the connection from the other side; `cut`: without a word.
@@ -29,7 +33,8 @@ public:
     /// Releases what the callbacks hold, as when a connection has ended.
     void forget_handlers() { handlers_ = {}; }
 
-    bool is_closed = false;
+    bool is_closed = false, is_browser = false;
+    int sent = 0; ///< messages
 
 private:
     Handlers handlers_;

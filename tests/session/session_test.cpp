@@ -88,6 +88,34 @@ TEST(Session, HelloCameraAndAckAreOverdueInTheirTurn) {
     EXPECT_EQ(viewer.overdue_after(std::chrono::hours(1)), "");
 }
 
+TEST(Session, WhoAsksForFilesHasLonger) {
+    Viewed viewer;
+    viewer.session->start();
+    viewer.stream->is_browser = true;
+    EXPECT_EQ(viewer.overdue_after(Session::hello_timeout + std::chrono::seconds(1)), "");
+    EXPECT_NE(viewer.overdue_after(Session::files_timeout).find("Hello"), std::string::npos);
+}
+
+TEST(Session, WhoHasSaidNothingIsToldNothing) {
+    for (bool const speaks : {false, true}) {
+        FakeConnection stream;
+        Session::Events events;
+        events.admit = [](Hello const&) { return Welcome{}; };
+        events.changed = [] {};
+        std::string ended;
+        events.ended = [&](std::string const& reason) { ended = reason; };
+        auto const session = std::make_shared<Session>(1, stream.stream(), std::move(events));
+        session->start();
+        if (speaks) {
+            stream->bring(Hello{});
+        }
+        int const before = stream->sent;
+        session->end("too late", true);
+        EXPECT_EQ(stream->sent - before, speaks ? 1 : 0) << "a browser may keep the connection for its next request";
+        EXPECT_EQ(ended, "too late");
+    }
+}
+
 EncodedBatch batch_of_bytes(std::uint64_t number, std::size_t bytes) {
     EncodedBatch batch;
     batch.number = number;
