@@ -4,17 +4,6 @@ import shutil
 from selenium import webdriver
 
 
-class Chromium(webdriver.Chrome):
-    def get(self, url):
-        """Loads a page. Its driver now and then says that it has, and goes on with the empty document before it."""
-        for _ in range(3):
-            super().get(url)
-            if url == 'about:blank' or self.execute_script('return document.URL') != 'about:blank':
-                return
-            print(f'the driver went on with an empty document; the browser says that it is at {self.current_url}')
-            super().get('about:blank')
-
-
 def start_chromium(width, height):
     """A browser without a window, whose own one is of this size, and whose OpenGL is a program."""
     if not shutil.which('chromium') or not shutil.which('chromedriver'):
@@ -27,4 +16,4 @@ def start_chromium(width, height):
     options.accept_insecure_certs = True
     options.set_capability('goog:loggingPrefs', {'browser': 'ALL'})
     service = webdriver.chrome.service.Service(shutil.which('chromedriver'))
-    return Chromium(service=service, options=options)
+    return webdriver.Chrome(service=service, options=options)
