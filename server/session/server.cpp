@@ -343,7 +343,8 @@ struct Server::Impl {
 
     void drop_overdue_connections() {
         for (auto const& [session, reason] : connections.overdue(steady_clock::now())) {
-            session->end(reason, true);
+            // A browser that keeps a connection for later would take a Failure for its answer.
+            session->end(reason, true, session->has_spoken());
         }
     }
 

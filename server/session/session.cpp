@@ -49,8 +49,7 @@ void Session::close(std::string const& farewell, bool again) {
     stream_->close_after_sending();
 }
 
-void Session::end(std::string const& reason, bool again) {
-    bool has_spoken = false;
+void Session::end(std::string const& reason, bool again, bool tells) {
     {
         std::scoped_lock const lock(mutex_);
         parked_ = false;
@@ -58,9 +57,8 @@ void Session::end(std::string const& reason, bool again) {
             return;
         }
         open_ = false;
-        has_spoken = has_spoken_;
     }
-    if (has_spoken) { // a browser that keeps a connection for later would take it for an answer
+    if (tells) {
         stream_->send(Failure{reason, again});
     }
     stream_->close_after_sending();
@@ -128,6 +126,11 @@ void Session::abandon() {
     if (earlier) {
         earlier->abandon();
     }
+}
+
+bool Session::has_spoken() const {
+    std::scoped_lock const lock(mutex_);
+    return has_spoken_;
 }
 
 bool Session::is_open() const {

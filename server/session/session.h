@@ -69,10 +69,11 @@ public:
     std::string peer() const { return stream_->peer(); }
 
     // The following may be called from any thread:
-    /// Ends the session: the server cannot go on with this viewer, which is told the reason, one line, as is whoever
-    /// waits for `ended`.
-    void end(std::string const& reason, bool again = false);
+    /// Ends the session: the server cannot go on with this viewer, which is told the reason, one line, if `tells`, as
+    /// is whoever waits for `ended`.
+    void end(std::string const& reason, bool again = false, bool tells = true);
     bool is_open() const;
+    bool has_spoken() const; ///< a message has come
     bool has_ended() const;
     /// True where it was cut, and is gone on with if the viewer comes back.
     bool is_parked() const;
@@ -127,7 +128,7 @@ private:
     mutable std::mutex mutex_;
     bool started_ = false;
     bool open_ = false; ///< handshake done, not ended
-    bool has_spoken_ = false; ///< a message has come
+    bool has_spoken_ = false;
     bool ended_ = false;
     bool parked_ = false; ///< ended by a cut, and may be gone on with
     std::shared_ptr<Session> earlier_; ///< the session to be taken over; it has none itself

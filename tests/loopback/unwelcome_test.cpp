@@ -1,6 +1,7 @@
 // The real server while others do it no good: connections that say nothing, guesses of the token, no file descriptors,
 // a log that nobody reads, a terminal that is gone, and arguments that are found to be wrong before the scene is
 // loaded.
+#include <array>
 #include <csignal>
 #include <deque>
 #include <thread>
@@ -86,6 +87,18 @@ TEST(Unwelcome, WhoLosesItsPlaceIsToldWhy) {
             RawViewer(port_of(server), coding::all, "wrong").failure();
         }
     }
+}
+
+/// A browser may use the connection for its next request, and would take a word for the answer.
+TEST(Unwelcome, WhoSaysNothingIsCutWithoutAWord) {
+    ServerProcess server(scene_file, {"--paused"});
+    boost::asio::io_context io;
+    boost::asio::ip::tcp::socket socket(io);
+    socket.connect({boost::asio::ip::address_v4::loopback(), port_of(server)});
+    std::array<char, 64> told{};
+    boost::system::error_code error;
+    EXPECT_EQ(socket.read_some(boost::asio::buffer(told), error), 0u);
+    EXPECT_EQ(error, boost::asio::error::eof) << error.message();
 }
 
 TEST(Unwelcome, WithoutFileDescriptorsItWaitsForThem) {
