@@ -22,6 +22,7 @@
 #include "common/counted.h"
 #include "common/error.h"
 #include "common/large_blocks.h"
+#include "common/one_line.h"
 #include "protocol/stream/local_token.h"
 #include "protocol/stream/tls.h"
 #include "protocol/stream/token.h"
@@ -159,7 +160,7 @@ LightOptions light_of(Options const& options, Scene const& scene) {
         try {
             light.method = parse_light_method(scene.light);
         } catch (InputError const& error) {
-            spdlog::warn("asset.extras.framelet_light: {}", error.what());
+            spdlog::warn("asset.extras.framelet_light: {}", to_one_line(error.what(), 80)); // the file's words
         }
     }
     return light;

@@ -2,7 +2,7 @@
 // viewers. In: places that are looked at, light that was gathered there. Out: light at any place, without rays.
 //
 // Each cell that is looked at has coarser ones around it, which know of all that was
-// gathered in them; a record shows these until it knows more itself (empirical Bayes, `refresh`).
+// gathered in them; a record shows these until it knows more itself (`refresh`).
 #pragma once
 
 #include <array>
