@@ -62,7 +62,8 @@ void BatchWork::render(PosedScene const& scene, PathSums& sums) {
         }
     }
     LightGathering* const gathering = scene.light_gathering();
-    std::size_t const packets = gathering != nullptr ? gathering->plan(light_paths(*gathering, count)) : 0;
+    std::size_t const packets =
+        gathering != nullptr ? gathering->plan(light_paths(*gathering, count), LightCache::Use::recent) : 0;
     tbb::parallel_for(std::size_t{0}, count + packets, [&](std::size_t i) {
         if (i >= count) {
             gathering->follow(i - count);

@@ -3,8 +3,8 @@
 #include <utility>
 
 #include <glm/geometric.hpp>
+#include <tbb/global_control.h>
 
-#include "server/render/picture_renderer.h"
 #include "server/scene/motion/bodies.h"
 
 namespace framelet {
@@ -26,19 +26,45 @@ PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene
             light_cache_ = std::make_unique<LightCache>(bounds.empty() ? 1.0f : glm::length(bounds.size()));
             gathering_ = std::make_unique<LightGathering>(*path_light_, *light_cache_);
             render_scene_.set_light(light_cache_.get(), options.sizes);
-            learn_first_light(scene.cameras.empty() ? default_camera(bounds) : camera(0, 0));
+            walk_.emplace(first_cameras(bounds));
+            learn_first_light();
         }
     }
 }
 
+/// What viewers look through at first.
+std::vector<Camera> PosedScene::first_cameras(Bounds const& bounds) {
+    std::vector<Camera> cameras;
+    for (std::size_t i = 0; i < scene_.cameras.size(); ++i) {
+        cameras.push_back(camera(static_cast<Index>(i), 0));
+    }
+    return cameras.empty() ? std::vector{default_camera(bounds)} : cameras;
+}
+
 /// Learns how bright the scene is, and coarsely where, before anybody sees it.
-void PosedScene::learn_first_light(Camera const& camera) {
-    constexpr Viewport few_pixels{160, 120};
+void PosedScene::learn_first_light() {
     constexpr std::size_t slice = 4096, slices = 4;
-    render_radiance(render_scene_, camera, few_pixels, 1);
+    walk_->look(render_scene_);
     for (std::size_t i = 0; i < slices; ++i) {
         gathering_->work(slice);
     }
+}
+
+bool PosedScene::learn_light() {
+    constexpr double slice = 0.008; // seconds: whoever comes meanwhile waits so long
+    constexpr std::size_t paths_a_look = 1 << 16;
+    if (!gathering_) {
+        return false;
+    }
+    if (!walk_->is_over() && (paths_since_look_ >= paths_a_look || !gathering_->is_learning())) {
+        walk_->look(render_scene_);
+        light_cache_->note_unwatched();
+        paths_since_look_ = 0;
+    }
+    auto const threads =
+        static_cast<double>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    paths_since_look_ += gathering_->work(gathering_->paths_in(slice * threads));
+    return gathering_->is_learning() || !walk_->is_over();
 }
 
 bool PosedScene::camera_moves(int index) const {

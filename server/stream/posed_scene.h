@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "server/render/gathering/light_gathering.h"
+#include "server/render/gathering/light_walk.h"
 #include "server/render/path/path_light.h"
 #include "server/render/prepared/render_scene.h"
 #include "server/scene/motion/animation.h"
@@ -40,6 +41,10 @@ public:
     /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
 
+    /// Learns light that nobody waits for, for some milliseconds on the calling TBB arena: what was looked at lately,
+    /// then what viewers may come to see. False once all of it is good enough.
+    bool learn_light();
+
     /// Moves everything that is rendered to where it is at `time`; nothing where it is there already. Throws
     /// SceneUnposed where it cannot; until it can, nothing is to be rendered.
     void pose(SceneTime time);
@@ -51,7 +56,8 @@ public:
     bool camera_moves(int index) const;
 
 private:
-    void learn_first_light(Camera const& camera);
+    std::vector<Camera> first_cameras(Bounds const& bounds);
+    void learn_first_light();
 
     Scene const& scene_;
     std::vector<Index> const clips_;
@@ -63,6 +69,8 @@ private:
     std::unique_ptr<PathLight> path_light_;
     std::unique_ptr<LightCache> light_cache_;
     std::unique_ptr<LightGathering> gathering_;
+    std::optional<LightWalk> walk_; ///< where light is gathered
+    std::size_t paths_since_look_ = 0; ///< of the walk
     /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
     std::optional<SceneTime> rendered_ = 0;
 };

@@ -219,7 +219,7 @@ std::array<float, 2> least_and_most(Light light) {
         teach(cache, places.back(), cell, light(i));
     }
     std::vector<std::uint32_t> wanted;
-    cache.list_wanted(1, wanted);
+    cache.list_wanted(1, LightCache::Use::recent, wanted);
     for (int i = 0; i < 20; ++i) {
         cache.renew(cache.records().size());
     }
@@ -271,11 +271,48 @@ TEST(LightCache, GoodRecordsAskForNothing) {
     LightCache cache(scene_size);
     std::vector<std::uint32_t> wanted;
     teach(cache, on_floor(0, 0), 0.25f, gathered(1, 16, 1));
-    cache.list_wanted(100, wanted);
+    cache.list_wanted(100, LightCache::Use::recent, wanted);
     EXPECT_EQ(wanted.size(), 1u);
     teach(cache, on_floor(0, 0), 0.25f, gathered(1, 3000, 1));
-    cache.list_wanted(100, wanted);
+    cache.list_wanted(100, LightCache::Use::recent, wanted);
     EXPECT_TRUE(wanted.empty());
+}
+
+TEST(LightCache, WhatNobodyLooksAtAnyMoreIsLearntWhereThereIsTime) {
+    LightCache cache(scene_size);
+    std::vector<std::uint32_t> wanted;
+    teach(cache, on_floor(0, 0), 0.25f, gathered(1, 16, 1));
+    cache.note_unwatched();
+    cache.list_wanted(100, LightCache::Use::recent, wanted);
+    EXPECT_TRUE(wanted.empty());
+    cache.list_wanted(100, LightCache::Use::any, wanted);
+    EXPECT_EQ(wanted.size(), 1u);
+    shade(cache, on_floor(0, 0), 0.25f);
+    cache.list_wanted(100, LightCache::Use::recent, wanted);
+    EXPECT_EQ(wanted.size(), 1u) << "somebody does again";
+}
+
+TEST(LightCache, PathsEndWhereEnoughIsKnownInTheirPose) {
+    LightCache cache(scene_size);
+    LightPlace const place = on_floor(0.1f, 0.1f);
+    IncomingLight light;
+    EXPECT_FALSE(cache.find_known(place, 0.25f, 1, light));
+    EXPECT_EQ(cache.admit(all_asked), LightCache::Admitted::nothing) << "it has asked for nothing";
+    teach(cache, place, 0.25f, gathered(3, 16));
+    EXPECT_FALSE(cache.find_known(place, 0.25f, 1, light)) << "of too few paths";
+    teach(cache, place, 0.25f, gathered(3, 64));
+    ASSERT_TRUE(cache.find_known(place, 0.25f, 1, light));
+    EXPECT_FLOAT_EQ(light.all.g, 3);
+    ASSERT_TRUE(cache.find_known(place, 1.0f / 16, 1, light)) << "of the coarser cell around";
+    EXPECT_FLOAT_EQ(light.all.g, 3);
+    EXPECT_FALSE(cache.find_known(place, 1.0f / 64, 1, light)) << "which is too coarse for this";
+    EXPECT_FALSE(cache.find_known({0, place.position, {0, -1, 0}}, 0.25f, 1, light)) << "of the other side";
+    cache.note_pose();
+    EXPECT_FALSE(cache.find_known(place, 0.25f, 2, light)) << "it was not checked since";
+    EXPECT_TRUE(cache.find_known(place, 0.25f, 1, light)) << "whoever was not checked either knows no better";
+    auto const record = static_cast<std::uint32_t>(nearest(cache, place, 0.25f) - cache.records().data());
+    cache.check(record, 1);
+    EXPECT_TRUE(cache.find_known(place, 0.25f, 2, light));
 }
 
 TEST(LightCache, WhatWasNotLookedUpForLongestLeaves) {

@@ -26,8 +26,8 @@ constexpr float most_paths = 4096;
 /// The first paths of a record count in the cells around it: no more, so that these show all of them alike, and not
 /// most of all those with the most noise.
 constexpr float spread_paths = 64;
-/// Rounds after which what was not looked up is not worked on.
-constexpr std::uint32_t recent_rounds = 1024;
+/// Rounds after which what was not looked up is not recent.
+constexpr std::uint32_t recent_rounds = 256;
 constexpr float young_rounds = 64; ///< after twice as many it is worth a third
 /// Paths of all records together that are remembered.
 constexpr float remembered_paths = 4096;
@@ -39,6 +39,9 @@ constexpr float least_off = 0.01f;
 /// is shown as a share of the rest, which is of as many paths as tell it.
 constexpr float bright = 8;
 constexpr float telling_paths = 1024;
+/// Paths of a record from which on it tells paths that end there, and the share of what is around that has to know.
+constexpr float told_paths = 64;
+constexpr float known_share = 0.5f;
 constexpr float telling_checks = 4; ///< fewer say little of a cell
 /// Cells in one that is around them, of a surface.
 constexpr float cells_around = 1 << (2 * parent_levels);
@@ -155,6 +158,39 @@ bool LightCache::look_up(LightPlace const& place, float cell_size, IncomingLight
     return true;
 }
 
+bool LightCache::tells_of_others(LightRecord const& record, std::uint32_t pose) const {
+    return record.known && record.gathered.paths >= told_paths && record.checked >= pose;
+}
+
+bool LightCache::find_known(LightPlace const& place, float cell_size, std::uint32_t pose, IncomingLight& out) const {
+    IncomingLight found;
+    float lacking = 1;
+    int const finest = static_cast<int>(cells_.level_of(cell_size));
+    int const coarsest = std::max(finest - parent_levels, 0);
+    for (int level = finest; level >= coarsest && lacking > least_weight; --level) {
+        IncomingLight sum;
+        float weight = 0, all = 0;
+        LightCells::Around around;
+        cells_.visit_around(place, level, around, [&](std::uint32_t number, float w, bool) {
+            all += w;
+            if (LightCells::is_record(number) && tells_of_others(cells_[number], pose)) {
+                sum.add(cells_[number].shown, w);
+                weight += w;
+            }
+        });
+        if (weight > least_weight) {
+            found.add(sum, lacking / all);
+            lacking *= 1 - weight / all;
+        }
+    }
+    if (lacking > 1 - known_share) {
+        return false;
+    }
+    out = {};
+    out.add(found, 1 / (1 - lacking));
+    return true;
+}
+
 LightCache::Admitted LightCache::admit(std::size_t most) {
     bool looked_up = false;
     std::size_t count = 0;
@@ -233,15 +269,19 @@ void LightCache::forget_oldest() {
     next_renewed_ = 0;
 }
 
-bool LightCache::is_recent(LightRecord const& record) const {
-    return record.uses > 0 && record.used + recent_rounds > round_;
+void LightCache::note_unwatched() {
+    round_ += recent_rounds;
 }
 
-/// Lists the records that were looked up in the last rounds, and those around them.
-void LightCache::list_in_use() {
+bool LightCache::is_used(LightRecord const& record, Use use) const {
+    return record.uses > 0 && (use == Use::any || record.used + recent_rounds > round_);
+}
+
+/// Lists the records that are used, and those around them.
+void LightCache::list_in_use(Use use) {
     is_used_.assign(cells_.count(), 0);
     for (std::uint32_t i = cells_.count(); i-- > 0;) { // what is around was not made after it
-        is_used_[i] = is_used_[i] != 0 || is_recent(cells_[i]) ? 1 : 0;
+        is_used_[i] = is_used_[i] != 0 || is_used(cells_[i], use) ? 1 : 0;
         if (is_used_[i] != 0 && cells_[i].parent != nothing) {
             is_used_[cells_[i].parent] = 1;
         }
@@ -255,9 +295,10 @@ void LightCache::list_in_use() {
     }
 }
 
-void LightCache::list_wanted(std::size_t most, std::vector<std::uint32_t>& out) {
+float LightCache::list_wanted(std::size_t most, Use use, std::vector<std::uint32_t>& out) {
     wanted_.clear();
-    list_in_use();
+    list_in_use(use);
+    float squares = 0, weights = 0;
     for (std::uint32_t const i : in_use_) {
         LightRecord& record = cells_[i];
         if (record.parent != nothing && record.followed != cells_[record.parent].change) {
@@ -266,20 +307,26 @@ void LightCache::list_wanted(std::size_t most, std::vector<std::uint32_t>& out) 
             outdate(record, more);
             record.change += more;
         }
-        if (is_recent(record) && record.error > enough_error && record.gathered.paths < most_paths) {
+        if (is_used(record, use)) {
             float const age = static_cast<float>(round_ - record.used) / young_rounds;
-            float const worth = record.error * record.error * static_cast<float>(record.uses) / (1 + age);
-            wanted_.emplace_back(-worth, i);
+            float const weight = static_cast<float>(record.uses) / (1 + age);
+            float const worth = weight * record.error * record.error;
+            squares += worth;
+            weights += weight;
+            if (record.error > enough_error && record.gathered.paths < most_paths) {
+                wanted_.emplace_back(-worth, i);
+            }
         }
     }
     take_wanted(most, out);
+    return weights > 0 ? std::sqrt(squares / weights) : 0;
 }
 
-void LightCache::list_unchecked(std::size_t most, std::vector<std::uint32_t>& out) {
+void LightCache::list_unchecked(std::size_t most, Use use, std::vector<std::uint32_t>& out) {
     wanted_.clear();
     for (std::uint32_t i = 0; i < cells_.count(); ++i) {
         LightRecord const& record = cells_[i];
-        if (is_recent(record) && record.own > 0 && record.checked != pose_) {
+        if (is_used(record, use) && record.own > 0 && record.checked != pose_) {
             wanted_.emplace_back(-static_cast<float>(pose_ - record.checked), i);
         }
     }
@@ -329,6 +376,7 @@ void LightCache::end_checks() {
 /// little.
 void LightCache::judge_checks(std::uint32_t number) {
     LightRecord& cell = cells_[number];
+    cell.checked = pose_;
     float const mean = cell.changed / cell.checks;
     float const spread = std::max(cell.changed_squares / cell.checks - mean * mean, 0.0f);
     float change = std::max(mean * mean - spread / std::max(cell.checks - 1, 1.0f), 0.0f);
@@ -368,6 +416,7 @@ void LightCache::add(std::uint32_t number, GatheredLight const& gathered, float 
     for (std::uint32_t at = number; at != nothing && (spreads || at == number); at = cells_[at].parent) {
         cells_[at].gathered.add(gathered);
         cells_[at].told += spreads ? gathered.paths : 0;
+        cells_[at].checked = cells_[at].checked == 0 ? pose_ : cells_[at].checked;
         chain[count++] = at;
     }
     while (count > 0) {

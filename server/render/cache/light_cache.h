@@ -28,14 +28,22 @@ public:
     /// records where there are none. Any number of threads may look up at the same time.
     bool look_up(LightPlace const& place, float cell_size, IncomingLight& out);
 
+    /// The light at a place that paths meet, of cells of about this size, metres, or up to four times as wide; asks for
+    /// nothing. False where little was gathered there, or where it was checked in an earlier pose than `pose`.
+    bool find_known(LightPlace const& place, float cell_size, std::uint32_t pose, IncomingLight& out) const;
+
     enum class Admitted : std::uint8_t { nothing, some, renumbered };
     /// Makes up to `most` of the records that were asked for, and those around them: who looks up again asks for the
     /// others again. Says whether some were asked for, and whether all have other numbers now. Not to be called while
     /// anything looks up, as all below.
     Admitted admit(std::size_t most);
-    /// Numbers of records that were looked up in the last rounds, most wanted first, at most `most`: those that are not
-    /// good enough.
-    void list_wanted(std::size_t most, std::vector<std::uint32_t>& out);
+    /// Whose records are worked on: those that were looked up in the last rounds, or all.
+    enum class Use : std::uint8_t { recent, any };
+    /// Numbers of records that are not good enough, most wanted first, at most `most`. Returns the standard error of
+    /// what all records show that are used, relative, in the mean of squares by how much they are used; 0: none is.
+    float list_wanted(std::size_t most, Use use, std::vector<std::uint32_t>& out);
+    /// To be called when nobody looks any more at what was looked up: it is not recent from now on.
+    void note_unwatched();
     /// Adds what paths have brought to a record, and to all around it where they are of its first ones. `first`: the
     /// luminance that the first of them has brought.
     void add(std::uint32_t record, GatheredLight const& gathered, float first);
@@ -48,9 +56,9 @@ public:
 
     /// To be called when the scene has another pose: from now on all records are to be checked.
     void note_pose() { ++pose_; }
-    /// Numbers of records that were looked up in the last rounds and not checked in this pose, at most `most`, those
-    /// first that were checked longest ago.
-    void list_unchecked(std::size_t most, std::vector<std::uint32_t>& out);
+    /// Numbers of records that were not checked in this pose, at most `most`, those first that were checked longest
+    /// ago.
+    void list_unchecked(std::size_t most, Use use, std::vector<std::uint32_t>& out);
     /// Takes in what the first path of a record brings now. Where some in a cell bring something else, what was
     /// gathered before counts less, there and around it.
     void check(std::uint32_t record, float first);
@@ -74,6 +82,7 @@ private:
     };
 
     void use(std::uint32_t record, bool is_nearest);
+    bool tells_of_others(LightRecord const& record, std::uint32_t pose) const;
     static void ask(LightPlace const& place, int level, CellKey const& key, LookedUp& own);
     float add_level(LightPlace const& place, int level, float share, bool asks, LookedUp& own, IncomingLight& out);
     std::uint32_t make(LightPlace const& place, int level);
@@ -82,8 +91,8 @@ private:
     void refresh(LightRecord& record);
     void judge_checks(std::uint32_t record);
     void outdate(LightRecord& record, float change);
-    void list_in_use();
-    bool is_recent(LightRecord const& record) const;
+    void list_in_use(Use use);
+    bool is_used(LightRecord const& record, Use use) const;
     void take_wanted(std::size_t most, std::vector<std::uint32_t>& out);
 
     LightCells cells_;

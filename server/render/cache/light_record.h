@@ -77,7 +77,7 @@ struct LightRecord {
     float excess = 0; ///< of `shown`: what bright paths add to the rest, as a share of that
     bool known = false; ///< `shown` says something
     std::uint32_t used = 0; ///< when it was looked up last, in rounds
-    std::uint32_t uses = 0; ///< how often since it was worked on
+    std::uint32_t uses = 0; ///< how often
     std::uint32_t parent = ~0u; ///< number of the record of the coarser cell around it; ~0: it is the coarsest
     GatheredLight gathered; ///< its own and its children's
     float own = 0; ///< paths that left its own place

@@ -1,6 +1,7 @@
 #include "server/render/gathering/light_gathering.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
@@ -63,13 +64,17 @@ struct Gathering {
 };
 
 /// Follows a packet of paths from the place of a record; sets `first` to the luminance of the first. `bright`:
-/// luminance beyond which what a path brings is kept apart.
-GatheredLight gather_packet(PathScene const& scene, PathOptions const& options, LightRecord const& record, float bright,
-                            float& first) {
+/// luminance beyond which what a path brings is kept apart. Paths end at surfaces of which the light is known.
+GatheredLight gather_packet(PathScene const& scene, PathOptions options, LightCache const& known,
+                            LightRecord const& record, float bright, float& first) {
     Gathering gathering;
     for (int i = 0; i < lanes; ++i) {
         gathering.set(i, scene, record, options.seed,
                       static_cast<std::uint32_t>(record.own) + static_cast<std::uint32_t>(i));
+    }
+    if (record.own > 0) { // the first path is what checks follow again: by itself
+        options.known = &known;
+        options.known_pose = record.checked;
     }
     gathering.follow(scene, options, all_lanes);
     GatheredLanes const& brought = gathering.brought;
@@ -119,23 +124,23 @@ void LightGathering::note_pose() {
 }
 
 /// Lists records anew where all that were listed have been worked on.
-void LightGathering::refill() {
-    if (moved_ && next_unchecked_ == unchecked_.size()) {
-        cache_.list_unchecked(listed, unchecked_);
+void LightGathering::refill(LightCache::Use use) {
+    bool const looks = idle_ % idle_plans == 0;
+    if (next_unchecked_ == unchecked_.size() && (moved_ || looks)) { // what was not in use in this pose may be now
+        cache_.list_unchecked(listed, use, unchecked_);
         next_unchecked_ = 0;
-        moved_ = !unchecked_.empty();
-        if (!moved_) {
+        if (std::exchange(moved_, !unchecked_.empty()) && !moved_) {
             cache_.end_checks();
         }
     }
-    if (next_wanted_ == wanted_.size() && idle_ % idle_plans == 0) {
-        cache_.list_wanted(listed, wanted_);
+    if (next_wanted_ == wanted_.size() && looks) {
+        share_.note_error(cache_.list_wanted(listed, use, wanted_));
         next_wanted_ = 0;
     }
     idle_ = next_wanted_ == wanted_.size() ? idle_ + 1 : 0;
 }
 
-std::size_t LightGathering::plan(std::size_t most_paths) {
+std::size_t LightGathering::plan(std::size_t most_paths, LightCache::Use use) {
     LightCache::Admitted const admitted = cache_.admit(made_share * packets_of(most_paths));
     if (admitted == LightCache::Admitted::renumbered) {
         wanted_.clear();
@@ -145,7 +150,7 @@ std::size_t LightGathering::plan(std::size_t most_paths) {
     if (admitted != LightCache::Admitted::nothing) {
         idle_ = 0;
     }
-    refill();
+    refill(use);
     is_learning_ = moved_ || idle_ <= idle_plans;
     take(unchecked_, next_unchecked_, most_paths / check_share, checks_);
     take(wanted_, next_wanted_, (most_paths - checks_.size()) / lanes, gathers_);
@@ -160,8 +165,8 @@ void LightGathering::follow(std::size_t packet) {
     Laps laps;
     if (packet < gathers_.size()) {
         LightRecord const& record = cache_.records()[gathers_[packet]];
-        gathered_[packet] =
-            gather_packet(light_.scene(), options_, record, cache_.bright_path(gathers_[packet]), first_[packet]);
+        gathered_[packet] = gather_packet(light_.scene(), options_, cache_, record,
+                                          cache_.bright_path(gathers_[packet]), first_[packet]);
     } else {
         follow_check(packet - gathers_.size());
     }
@@ -194,8 +199,9 @@ void LightGathering::finish(std::size_t samples, double samples_took) {
     cache_.renew(renewed_share * gathers_.size());
 }
 
-std::size_t LightGathering::work(std::size_t most_paths, std::size_t samples, double samples_took) {
-    std::size_t const packets = plan(most_paths);
+std::size_t LightGathering::work(std::size_t most_paths, LightCache::Use use, std::size_t samples,
+                                 double samples_took) {
+    std::size_t const packets = plan(most_paths, use);
     tbb::parallel_for(std::size_t{0}, packets, [&](std::size_t i) { follow(i); });
     finish(samples, samples_took);
     return checks_.size() + gathers_.size() * lanes;

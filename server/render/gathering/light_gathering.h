@@ -24,7 +24,7 @@ public:
 
     /// Plans up to `most_paths` paths for the records that are wanted most; where the scene has moved, some of them
     /// check whether the light has changed. Returns in how many packets; none: all that is looked at is good enough.
-    std::size_t plan(std::size_t most_paths);
+    std::size_t plan(std::size_t most_paths, LightCache::Use use);
     /// Follows one of the packets that were planned. Others may be followed, and the cache be looked up, meanwhile.
     void follow(std::size_t packet);
     /// Teaches the cache what all the packets have brought. Nothing may look up meanwhile, nor while paths are planned.
@@ -33,12 +33,15 @@ public:
 
     /// Paths that are as many as there is time for beside so many samples.
     std::size_t paths_beside(std::size_t samples) const { return share_.paths_beside(samples); }
+    /// Paths that take so many processor seconds, about.
+    std::size_t paths_in(double seconds) const { return share_.paths_in(seconds); }
 
     /// All of that, in parallel on the calling TBB arena. Returns how many paths that took.
-    std::size_t work(std::size_t most_paths, std::size_t samples = 0, double samples_took = 0);
+    std::size_t work(std::size_t most_paths, LightCache::Use use = LightCache::Use::any, std::size_t samples = 0,
+                     double samples_took = 0);
 
 private:
-    void refill();
+    void refill(LightCache::Use use);
     void follow_check(std::size_t packet);
 
     PathLight const& light_;

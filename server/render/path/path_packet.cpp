@@ -5,8 +5,10 @@
 
 #include <glm/geometric.hpp>
 
+#include "server/render/cache/light_cache.h"
 #include "server/render/light/luminance.h"
 #include "server/render/path/path_random.h"
+#include "server/render/prepared/light_frame.h"
 #include "server/render/trace/tracing.h"
 
 namespace framelet {
@@ -69,12 +71,13 @@ void PathPacket::follow_from(int step, LaneMask active) {
         note_density(present);
         add_emission(present);
         LaneMask passed = 0;
-        LaneMask const scattering = choose_scattering(present, passed);
+        LaneMask scattering = choose_scattering(present, passed);
+        add_sampled_lamps(scattering);
+        scattering &= ~add_known(scattering);
         if (options_.light_rays != LightRays::by_surface) {
             add_sampled_area_lights(scattering);
             add_sampled_sky(scattering);
         }
-        add_sampled_lamps(scattering);
         if (options_.light_rays == LightRays::both && !paths_.lamp_rays.empty()) {
             add_lit_by_lamps(scattering);
         }
@@ -176,7 +179,7 @@ LaneMask PathPacket::choose_scattering(LaneMask present, LaneMask& passed) {
             float const transmission = unlit ? 0 : surfaces_.transmission[i] * alpha * entering_share;
             behind = Vec3(1 - alpha) + surfaces_.base_color.get(i) * transmission;
         }
-        float const back = unlit ? 0 : alpha * mean_albedo(scattering_[static_cast<std::size_t>(i)], scene_.split_sum);
+        float const back = unlit ? 0 : alpha * mean(albedo(scattering_[static_cast<std::size_t>(i)], scene_.split_sum));
         float const chance = mean(behind) > 0 ? mean(behind) / (mean(behind) + back) : 0.0f;
         if (chance > 0 && random(i, roulette).x < chance) {
             passed |= 1u << i;
@@ -187,6 +190,25 @@ LaneMask PathPacket::choose_scattering(LaneMask present, LaneMask& passed) {
         }
     });
     return scattering;
+}
+
+/// Adds what arrives from all around where that is known already; returns those lanes.
+LaneMask PathPacket::add_known(LaneMask scattering) {
+    constexpr float cell_share = 0.1f; // of the way; with four times as much rooms were too dark
+    LaneMask known = 0;
+    if (gathered_ == nullptr || options_.known == nullptr) {
+        return known;
+    }
+    for_each_lane(scattering, [&](int i) {
+        LightPlace const place =
+            light_place(scene_, hits_.instance[i], surfaces_.leaving.get(i), surfaces_.geometric_normal.get(i));
+        IncomingLight in;
+        if (options_.known->find_known(place, cell_share * hits_.t[i], options_.known_pose, in)) {
+            known |= 1u << i;
+            add(i, throughput_.get(i) * albedo(scattering_[static_cast<std::size_t>(i)], scene_.split_sum) * in.all);
+        }
+    });
+    return known;
 }
 
 /// Starts the next ray of each path; returns the lanes that have one.

@@ -46,6 +46,7 @@ private:
     void note_density(LaneMask present);
     LaneMask passes_behind(LaneMask culled) const;
     LaneMask choose_scattering(LaneMask present, LaneMask& passed);
+    LaneMask add_known(LaneMask scattering);
     LaneMask bounce_on(LaneMask scattering);
     Geometry const& geometry_of(HitPacket const& hits, int i) const;
     Vec2 random(int i, Pair pair) const;

@@ -65,12 +65,12 @@ Scattering scattering_of(SurfacePacket const& s, int lane, SplitSumTable const& 
     return out;
 }
 
-float mean_albedo(Scattering const& scattering, SplitSumTable const& split_sum) {
+Vec3 albedo(Scattering const& scattering, SplitSumTable const& split_sum) {
     if (scattering.specular_chance == 0) {
-        return mean(scattering.diffuse);
+        return scattering.diffuse;
     }
     Vec2 const factors = split_sum.at(scattering.view.z, std::sqrt(scattering.alpha));
-    return mean(scattering.f0 * factors.x + factors.y + scattering.diffuse);
+    return scattering.f0 * factors.x + factors.y + scattering.diffuse;
 }
 
 Scattered scattered(Scattering const& s, Vec3 const& to_light, float least_alpha) {

@@ -19,8 +19,8 @@ struct Scattering {
 /// Lobes of a lane. `lambertian`: base colour * (1 - metallic) is all that is reflected.
 Scattering scattering_of(SurfacePacket const& surfaces, int lane, SplitSumTable const& split_sum, bool lambertian);
 
-/// Mean over colours of the share of uniform light that is returned.
-float mean_albedo(Scattering const& scattering, SplitSumTable const& split_sum);
+/// The share of uniform light that is returned.
+Vec3 albedo(Scattering const& scattering, SplitSumTable const& split_sum);
 
 struct Scattered {
     Vec3 reflected{0}; ///< BSDF * cosine

@@ -91,7 +91,7 @@ void SessionLoop::serve_once() {
     WallTime const began = std::chrono::steady_clock::now();
     bool const worked = give_turns(sessions, began) || finish_rendered();
     busy_seconds_ = busy_seconds_ + std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    if (worked) {
+    if (worked || (has_scene_ && learn_light())) {
         return;
     }
     if (!has_scene_) {
@@ -109,6 +109,15 @@ void SessionLoop::serve_once() {
     } else {
         woken_.wait(lock, woken);
     }
+}
+
+/// Learns light while no viewer waits for anything; false where all that matters is known.
+bool SessionLoop::learn_light() {
+    bool const learns = scene_.learn_light();
+    if (!learns && scene_.light_gathering() != nullptr && !std::exchange(has_learnt_light_, true)) {
+        spdlog::info("the light of the scene is learnt");
+    }
+    return learns;
 }
 
 /// Poses the scene, and notes whether there was memory for that.

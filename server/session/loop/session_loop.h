@@ -65,6 +65,7 @@ private:
     struct Pipeline;
 
     void serve_once();
+    bool learn_light();
     void pose_scene(SceneTime time);
     void try_for_scene(WallTime now);
     bool give_turns(Sessions const& sessions, WallTime now);
@@ -93,6 +94,7 @@ private:
     } round_; ///< what was rendered since the rate was learnt last, and how long that took
     double plan_seconds_ = 0; ///< how long planning a cycle takes, about
     bool waits_for_room_ = false; ///< a viewer's stream waits, in this round
+    bool has_learnt_light_ = false; ///< once there was no more to learn
     std::unique_ptr<Pipeline> pipeline_;
 
     std::mutex mutex_;

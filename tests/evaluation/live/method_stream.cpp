@@ -72,7 +72,7 @@ void MethodStream::render(PosedScene const&) {
 /// Learns light for the share of time that framelet's own streams learn, where the scene has a light cache.
 void MethodStream::gather_light(std::size_t samples, double samples_took) {
     if (LightGathering* const gathering = scene_.posed->light_gathering()) {
-        gathering->work(gathering->paths_beside(samples), samples, samples_took);
+        gathering->work(gathering->paths_beside(samples), LightCache::Use::recent, samples, samples_took);
     }
 }
 
