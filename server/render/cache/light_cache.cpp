@@ -39,9 +39,8 @@ constexpr float least_off = 0.01f;
 /// is shown as a share of the rest, which is of as many paths as tell it.
 constexpr float bright = 8;
 constexpr float telling_paths = 1024;
-/// Paths of a record from which on it tells paths that end there, and the share of what is around that has to know.
+/// Paths of a record from which on it tells paths that end there.
 constexpr float told_paths = 64;
-constexpr float known_share = 0.5f;
 constexpr float telling_checks = 4; ///< fewer say little of a cell
 /// Cells in one that is around them, of a surface.
 constexpr float cells_around = 1 << (2 * parent_levels);
@@ -163,32 +162,16 @@ bool LightCache::tells_of_others(LightRecord const& record, std::uint32_t pose) 
 }
 
 bool LightCache::find_known(LightPlace const& place, float cell_size, std::uint32_t pose, IncomingLight& out) const {
-    IncomingLight found;
-    float lacking = 1;
     int const finest = static_cast<int>(cells_.level_of(cell_size));
     int const coarsest = std::max(finest - parent_levels, 0);
-    for (int level = finest; level >= coarsest && lacking > least_weight; --level) {
-        IncomingLight sum;
-        float weight = 0, all = 0;
-        LightCells::Around around;
-        cells_.visit_around(place, level, around, [&](std::uint32_t number, float w, bool) {
-            all += w;
-            if (LightCells::is_record(number) && tells_of_others(cells_[number], pose)) {
-                sum.add(cells_[number].shown, w);
-                weight += w;
-            }
-        });
-        if (weight > least_weight) {
-            found.add(sum, lacking / all);
-            lacking *= 1 - weight / all;
+    for (int level = finest; level >= coarsest; --level) { // its own cells alone: paths end all over these
+        std::uint32_t const number = cells_.find(place, level);
+        if (number != nothing && tells_of_others(cells_[number], pose)) {
+            out = cells_[number].shown;
+            return true;
         }
     }
-    if (lacking > 1 - known_share) {
-        return false;
-    }
-    out = {};
-    out.add(found, 1 / (1 - lacking));
-    return true;
+    return false;
 }
 
 LightCache::Admitted LightCache::admit(std::size_t most) {
