@@ -85,7 +85,9 @@ struct GltfTrack {
 
 struct GltfDocument {
     std::string name;
-    std::string light; ///< how it wants to be lit, as --light says it, in the asset's extras; empty: as is usual
+    /// How it wants to be lit, as --light says it, in the asset's extras; empty: as the server finds best. Most scenes
+    /// were made for this light, and what is measured with them stays comparable.
+    std::string light = "direct";
     std::vector<std::string> images; ///< PNG files
     std::vector<GltfMaterial> materials;
     std::vector<GltfMesh> meshes;

@@ -11,6 +11,7 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#include <spdlog/fmt/fmt.h>
 #include <spdlog/spdlog.h>
 #include <sys/prctl.h>
 #include <tbb/global_control.h>
@@ -153,17 +154,24 @@ bool asks_for_list(Options const& options) {
            std::filesystem::is_directory(options.scenes.front(), code);
 }
 
-/// Light as is asked for, else as the scene's files want it.
-LightOptions light_of(Options const& options, Scene const& scene) {
-    LightOptions light = options.light;
-    if (!options.has_light_method && !scene.light.empty()) {
+/// Light as the scene's files want it, where they do and it is not told otherwise.
+std::optional<LightMethod> light_of_files(Options const& options, Scene const& scene) {
+    if (options.look.light_choice == LightChoice::by_view && !scene.light.empty()) {
         try {
-            light.method = parse_light_method(scene.light);
+            return parse_light_method(scene.light);
         } catch (InputError const& error) {
             spdlog::warn("asset.extras.framelet_light: {}", to_one_line(error.what(), 80)); // the file's words
         }
     }
-    return light;
+    return std::nullopt;
+}
+
+/// Which light a scene has, and why, for the log.
+std::string light_text(LoadedScene const& loaded) {
+    std::string const word = std::string(name_of(loaded.light.method)) + " light";
+    return loaded.light_difference
+               ? fmt::format("{} ({:.1f} steps of 255 from direct to full)", word, *loaded.light_difference)
+               : word;
 }
 
 /// Loads scenes and environment. Throws InputError where the files are of no use.
@@ -184,15 +192,19 @@ std::unique_ptr<LoadedScene> load_scene(Options const& options, Progress const& 
                          " no triangles, or none with an area");
     }
     std::vector<Index> clips = chosen_clips(scene, options.import);
-    LightOptions const light = light_of(options, scene);
-    auto loaded = std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment),
-                                                options.exposure_ev, progress, light);
+    LookOptions look = options.look;
+    if (std::optional<LightMethod> const wanted = light_of_files(options, scene)) {
+        look.light.method = *wanted;
+        look.light_choice = LightChoice::told;
+    }
+    auto loaded =
+        std::make_unique<LoadedScene>(std::move(scene), std::move(clips), std::move(environment), look, progress);
     Scene const& s = loaded->scene;
     double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - began).count();
-    spdlog::info("{}: {}, {}, {}, {}, {}; exposure {:+.1f} stops; loaded in {:.1f} s", s.name,
+    spdlog::info("{}: {}, {}, {}, {}, {}; {}, exposure {:+.1f} stops; loaded in {:.1f} s", s.name,
                  counted(s.nodes.size(), "node"), counted(count_triangles(s), "triangle"),
                  counted(s.clips.size(), "clip"), counted(s.lights.size(), "light"),
-                 counted(s.cameras.size(), "camera"), std::log2(loaded->exposure), seconds);
+                 counted(s.cameras.size(), "camera"), light_text(*loaded), std::log2(loaded->exposure), seconds);
     return loaded;
 }
 

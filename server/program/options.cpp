@@ -78,17 +78,17 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
            "(full); or all of it by paths alone (reference): noisy while anything moves, and for a while after")
         ->type_name("direct|full|reference")
         ->check(readable_by(parse_light_method))
-        ->default_str("direct, unless the scene file asks for another");
-    app.add_option("--sun-size", options.light.sun_degrees,
+        ->default_str("what the scene file asks for; else full where the first view shows it, direct where not");
+    app.add_option("--sun-size", options.look.light.sun_degrees,
                    "Diameter of suns, for soft shadows with --light full and reference; 0: hard")
         ->type_name("DEGREES")
         ->check(number_in(0.0, 90.0))
         ->capture_default_str();
-    app.add_option("--lamp-size", options.light.lamp_metres, "Diameter of lamps, likewise")
+    app.add_option("--lamp-size", options.look.light.lamp_metres, "Diameter of lamps, likewise")
         ->type_name("METRES")
         ->check(number_in(0.0, 1000.0))
         ->default_str("0.1, or a hundredth of the scene where that is less");
-    app.add_option("--exposure", options.exposure_ev, "Exposure")
+    app.add_option("--exposure", options.look.exposure_ev, "Exposure")
         ->type_name("STOPS")
         ->default_str("chosen for the scene")
         ->check(number_in(-32.0, 32.0));
@@ -225,11 +225,11 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     try {
         parse_command_line(app, argc, argv);
         options.log = parse_log_format(log);
-        options.has_light_method = !light.empty();
-        if (options.has_light_method) {
-            options.light.method = parse_light_method(light);
+        if (!light.empty()) {
+            options.look.light_choice = LightChoice::told;
+            options.look.light.method = parse_light_method(light);
         }
-        options.server.loop.stream.tone_curve = parse_tone_curve(tone_curve);
+        options.look.tone_curve = options.server.loop.stream.tone_curve = parse_tone_curve(tone_curve);
         if (!options.import.scene.empty() && options.scenes.size() > 1) {
             throw InputError("--scene chooses a scene of one file: give that file alone");
         }

@@ -8,6 +8,7 @@
 
 #include "server/program/log.h"
 #include "server/scene/reading/import_options.h"
+#include "server/session/loaded_scene.h"
 #include "server/session/loop/priority.h"
 #include "server/session/server.h"
 
@@ -17,9 +18,7 @@ struct Options {
     std::vector<std::filesystem::path> scenes; ///< files, shown together
     ImportOptions import;
     std::optional<std::filesystem::path> environment;
-    LightOptions light;
-    bool has_light_method = false; ///< else that of the scene's files counts, where they ask for one
-    std::optional<float> exposure_ev; ///< stops; empty: from the scene
+    LookOptions look{.light_choice = LightChoice::by_view}; ///< but the scene's files may tell the method
     int threads = 0; ///< 0: all cores
     int nice = default_nice; ///< of all threads
     bool quiet = false;

@@ -12,8 +12,6 @@
 
 namespace framelet {
 
-class PathLight;
-
 /// Renders one framelet per tile into `out` (same length), in parallel over framelets on the calling TBB arena. Each
 /// sample is a ray through the middle of its square of the tile. The result depends on scene, view and tile alone, not
 /// on threads or on the other tiles. Returns how many rays that took, shadow and mirror rays included.
@@ -38,10 +36,5 @@ std::uint64_t render_samples(RenderScene const& scene, ViewRays const& rays, std
 /// light (box filter). `samples_per_side`: 1, 2, 4 or 8.
 Picture render_picture(RenderScene const& scene, Camera const& camera, Viewport viewport,
                        DisplayTransform const& transform, int samples_per_side);
-
-/// The exposure that shows this view well: 1 where the log-average luminance of what is hit is within what a display
-/// shows, else what brings it to a middle grey. It is taken from a small picture and is deterministic. `light`: what
-/// finds the light by paths; null: it is found as framelets are rendered.
-float auto_exposure(RenderScene const& scene, Camera const& camera, PathLight const* light = nullptr);
 
 } // namespace framelet

@@ -1,9 +1,7 @@
-// Renders whole pictures: what a viewer converges to, and a small one by which the exposure is chosen.
+// Renders whole pictures: what a viewer converges to.
 #include "server/render/picture_renderer.h"
 
 #include <bit>
-#include <cmath>
-#include <numeric>
 
 #include <tbb/parallel_for.h>
 
@@ -11,8 +9,6 @@
 #include "common/error.h"
 #include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
-#include "server/render/light/luminance.h"
-#include "server/render/path/path_light.h"
 
 namespace framelet {
 namespace {
@@ -95,43 +91,6 @@ FloatImage render_radiance(RenderScene const& scene, Camera const& camera, Viewp
         }
     });
     return picture;
-}
-
-float auto_exposure(RenderScene const& scene, Camera const& camera, PathLight const* light) {
-    constexpr Viewport probe{64, 48};
-    constexpr double darkest = 0.02, brightest = 1, middle = 0.18;
-    ImagePlane const plane(probe);
-    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
-    std::vector<Framelet> framelets(tiles.size());
-    render_framelets(scene, camera, plane, tiles, framelets);
-    if (light != nullptr) {
-        constexpr int paths = 16;
-        ViewRays const view = make_view_rays(camera, probe);
-        tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {
-            TileSums sums;
-            trace_more_paths(*light, view, plane, paths, sums, framelets[i]);
-        });
-    }
-    std::vector<double> luminances;
-    for (Framelet const& framelet : framelets) {
-        for (std::size_t i = 0; i < framelet_samples; ++i) {
-            if (std::isfinite(framelet.depth[i])) {
-                luminances.push_back(double(luminance(Vec3(framelet.red[i], framelet.green[i], framelet.blue[i]))));
-            }
-        }
-    }
-    double const mean =
-        std::accumulate(luminances.begin(), luminances.end(), 0.0) / std::max<double>(1, double(luminances.size()));
-    if (!(mean > 1e-12)) { // nothing is hit, or nothing can be seen at any exposure
-        return 1;
-    }
-    // Black is black: however dark, it says no more about the light than a hundredth of the mean.
-    double sum = 0;
-    for (double const luminance : luminances) {
-        sum += std::log(std::max(luminance, 0.01 * mean));
-    }
-    double const average = std::exp(sum / double(luminances.size()));
-    return average >= darkest && average <= brightest ? 1.0f : static_cast<float>(middle / average);
 }
 
 } // namespace framelet

@@ -111,7 +111,8 @@ void Admission::keep_parked(std::size_t most) {
     }
 }
 
-void Admission::forget_viewers() {
+void Admission::forget_viewers(std::size_t light_bytes) {
+    memory_.set_more_per_pixel(light_bytes);
     while (auto const* const holder = tickets_.any()) {
         give_up(*holder);
     }

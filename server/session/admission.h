@@ -55,8 +55,8 @@ public:
     /// Lets at most `most` of those who are away, the last to go, come back; gives up the others.
     void keep_parked(std::size_t most);
     /// Nobody who was let in so far comes back, whether the server has noticed that they are gone or not: what they had
-    /// is of another scene.
-    void forget_viewers();
+    /// is of another scene. With this one each pixel takes `light_bytes` for its light.
+    void forget_viewers(std::size_t light_bytes);
     /// Gives up those who have been away for too long.
     void give_up_who_stay_away(Time now);
 

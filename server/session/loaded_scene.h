@@ -13,17 +13,26 @@
 
 namespace framelet {
 
+/// How a scene is to look.
+struct LookOptions {
+    std::optional<float> exposure_ev{}; ///< stops; nothing: chosen for what the first camera sees
+    ToneCurve tone_curve = ToneCurve::neutral;
+    LightOptions light{};
+    LightChoice light_choice = LightChoice::told; ///< of the method of `light`
+};
+
 struct LoadedScene {
-    /// Without `exposure_ev` (stops) the exposure is chosen for what the first camera sees.
     LoadedScene(Scene imported, std::vector<Index> playing, std::optional<Environment> environment,
-                std::optional<float> exposure_ev, Progress const& progress, LightOptions const& lit_by = {});
+                LookOptions const& look, Progress const& progress);
 
     Scene const scene;
     std::vector<Index> const clips; ///< that play
-    LightOptions const light;
     RenderScene render_scene;
     PosedScene posed;
     Welcome welcome; ///< as `make_welcome`
+    LightOptions light;
+    /// How far direct light is from all light in the first view, where the light was chosen by that; steps of 1/255.
+    std::optional<float> light_difference;
     float exposure = 1;
 };
 

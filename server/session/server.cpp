@@ -50,6 +50,11 @@ constexpr std::size_t viewer_lines = 20;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 
+/// What a picture at rest takes a pixel for its light.
+std::size_t light_bytes(PosedScene const& scene) {
+    return scene.path_light() != nullptr ? PathSums::bytes_per_pixel : 0;
+}
+
 } // namespace
 
 bool is_loopback(std::string const& bind) {
@@ -93,7 +98,7 @@ struct Server::Impl {
         : listener(std::move(bound)), options(given), welcome(std::move(told)),
           clock(!given.paused, steady_clock::now()),
           admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000,
-                     scene.path_light() != nullptr ? PathSums::bytes_per_pixel : 0},
+                     light_bytes(scene)},
                     [this] { loop.wake(); }),
           loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
@@ -132,7 +137,7 @@ struct Server::Impl {
                 end_in_need(*session, true);
             }
         }
-        admission.forget_viewers();
+        admission.forget_viewers(light_bytes(next->posed));
         welcome = std::move(next_welcome);
         loop.replace(std::move(next_loop)); // the one before goes before the scene that it looks at
         ++scenes;

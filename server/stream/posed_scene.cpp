@@ -15,20 +15,29 @@ PosedScene::PosedScene(Scene const& scene, std::vector<Index> clips, RenderScene
       animated_(animation_duration(scene, clips_) > 0), switches_(find_switches(scene, clips_)),
       moving_cameras_(framelet::moving_cameras(scene, clips_)), poses_(scene, clips_) {
     render_scene_.set_clips(clips_);
-    ScenePose const& pose = poses_.at(0);
-    render_scene_.set_pose(pose);
-    if (light.method != LightMethod::direct) {
-        Bounds const bounds = scene_bounds(scene, pose);
-        PathOptions options;
-        options.sizes = lamp_sizes(light, bounds);
-        path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), options);
-        if (light.method == LightMethod::full) {
-            light_cache_ = std::make_unique<LightCache>(bounds.empty() ? 1.0f : glm::length(bounds.size()));
-            gathering_ = std::make_unique<LightGathering>(*path_light_, *light_cache_);
-            render_scene_.set_light(light_cache_.get(), options.sizes);
-            walk_.emplace(first_cameras(bounds));
-            learn_first_light();
-        }
+    render_scene_.set_pose(poses_.at(0));
+    light_with(light);
+}
+
+void PosedScene::light_with(LightOptions const& light) {
+    walk_.reset();
+    gathering_.reset();
+    render_scene_.set_light(nullptr, {});
+    light_cache_.reset();
+    path_light_.reset();
+    if (light.method == LightMethod::direct) {
+        return;
+    }
+    Bounds const bounds = scene_bounds(scene_, poses_.pose());
+    PathOptions options;
+    options.sizes = lamp_sizes(light, bounds);
+    path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), options);
+    if (light.method == LightMethod::full) {
+        light_cache_ = std::make_unique<LightCache>(bounds.empty() ? 1.0f : glm::length(bounds.size()));
+        gathering_ = std::make_unique<LightGathering>(*path_light_, *light_cache_);
+        render_scene_.set_light(light_cache_.get(), options.sizes);
+        walk_.emplace(first_cameras(bounds));
+        learn_first_light();
     }
 }
 

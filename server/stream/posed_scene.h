@@ -41,6 +41,8 @@ public:
     /// Times at which its clips jump.
     std::span<ClipSwitches const> switches() const { return switches_; }
 
+    /// Finds light by `light` from now on. To be called before anybody looks.
+    void light_with(LightOptions const& light);
     /// Learns light that nobody waits for, for some milliseconds on the calling TBB arena: what was looked at lately,
     /// then what viewers may come to see. False once all of it is good enough.
     bool learn_light();

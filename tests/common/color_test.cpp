@@ -1,11 +1,13 @@
 #include "common/color.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "common/error.h"
+#include "common/tone_inverse.h"
 
 namespace framelet {
 namespace {
@@ -89,6 +91,31 @@ TEST(Color, EveryCurveStaysInRangeAndGetsBrighterWithGreyThatStaysGrey) {
         EXPECT_NEAR(tone_map(Vec3(0), curve).g, 0, 1e-4);
         EXPECT_GT(previous, 0.98f);
     }
+}
+
+TEST(Color, WhatTheNeutralCurveShowsAsAColourIsFound) {
+    std::mt19937 random(2);
+    std::uniform_real_distribution<float> light(0, 1.5f);
+    for (int i = 0; i < 200000; ++i) {
+        Vec3 const color = tone_map(Vec3(light(random), light(random), light(random)));
+        if (std::max({color.r, color.g, color.b}) <= 0.98f) {
+            Vec3 const shown = tone_map(radiance_shown_as(color, ToneCurve::neutral));
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_NEAR(srgb_byte_from_linear(shown[c]), srgb_byte_from_linear(color[c]), 1)
+                    << color.r << ' ' << color.g << ' ' << color.b;
+            }
+        }
+    }
+    for (ToneCurve const curve : all_curves) {
+        for (Vec3 const extreme : {Vec3(0), Vec3(1), Vec3(1, 0, 0), Vec3(0, 0, 1), Vec3(7, 0, 1e-20f)}) {
+            Vec3 const radiance = radiance_shown_as(extreme, curve);
+            for (int c = 0; c < 3; ++c) {
+                ASSERT_TRUE(std::isfinite(radiance[c]) && radiance[c] >= 0);
+            }
+        }
+    }
+    EXPECT_GE(srgb_byte_from_linear(tone_map(radiance_shown_as(Vec3(1), ToneCurve::neutral)).g), 252);
+    EXPECT_EQ(radiance_shown_as(Vec3(0), ToneCurve::neutral), Vec3(0));
 }
 
 TEST(Color, CurvesKnownValues) { // of their published formulas in double precision

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/render/first_look.h"
 #include "server/scene/backdrop.h"
 #include "server/scene/scene_import.h"
 
@@ -68,6 +69,7 @@ std::unique_ptr<BenchScene> load_bench_scene(std::filesystem::path const& file, 
     loaded->default_camera = default_camera(without_backdrop(scene_parts(loaded->scene, loaded->pose)));
     loaded->camera = camera_at(*loaded, 0);
     loaded->exposure = auto_exposure(*loaded->render_scene, loaded->camera, loaded->posed->path_light());
+    loaded->render_scene->set_display(loaded->exposure);
     return loaded;
 }
 

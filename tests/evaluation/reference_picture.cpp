@@ -8,6 +8,7 @@
 #include "client/core/camera/camera_path.h"
 #include "common/error.h"
 #include "common/files/picture_writer.h"
+#include "server/render/first_look.h"
 #include "server/render/path/path_light.h"
 #include "server/render/path/path_picture.h"
 #include "server/render/picture_renderer.h"

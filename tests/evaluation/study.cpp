@@ -5,6 +5,7 @@
 
 #include "client/core/camera/camera_path.h"
 #include "common/error.h"
+#include "server/render/first_look.h"
 #include "tests/evaluation/scene_events.h"
 
 namespace framelet::bench {
@@ -46,6 +47,7 @@ Subject prepare(std::filesystem::path const& file, StudyOptions const& options) 
         scene->name += kind;
         scene->camera = camera_at(*scene, 0);
         scene->exposure = auto_exposure(*scene->render_scene, scene->camera);
+        scene->render_scene->set_display(scene->exposure);
     }
     Reference reference = reference_of(*scene, of_scene);
     double const machine = machine_factor(*scene, of_scene.run, options.costs);

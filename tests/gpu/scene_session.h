@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/picture/reprojector.h"
+#include "server/render/first_look.h"
 #include "server/render/framelet_renderer.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/scene_import.h"

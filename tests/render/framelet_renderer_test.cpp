@@ -241,29 +241,6 @@ TEST(FrameletRenderer, FarCheckerboardIsGrey) {
     }
 }
 
-TEST(FrameletRenderer, AutoExposureLeavesGoodLightAloneAndMendsTheRest) {
-    auto exposure = [](float intensity) {
-        Scene scene;
-        scene.materials = {matte(Vec3(0.5f))};
-        add(scene, sphere(Vec3(0), 1, 0));
-        Light sun;
-        sun.type = LightType::point;
-        sun.intensity = intensity;
-        add_light(scene, sun, {0, 0, 4}, {0, 0, -1});
-        RenderScene const ready(scene, black());
-        return auto_exposure(ready, look_at({0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 0.8f));
-    };
-    EXPECT_EQ(exposure(20), 1);
-    float const bright = exposure(1e5f);
-    EXPECT_LT(bright, 0.01f);
-    EXPECT_NEAR(exposure(2e5f), bright / 2, 0.01f * bright);
-    EXPECT_GT(exposure(0.01f), 10);
-    EXPECT_EQ(exposure(0), 1);
-    Scene const nothing;
-    RenderScene const empty(nothing, std::nullopt);
-    EXPECT_EQ(auto_exposure(empty, Camera{}), 1);
-}
-
 /// Triangles, normals, coordinates and transforms of the worst kind that a consistent scene can hold.
 Scene degenerate_scene(unsigned seed) {
     std::mt19937 random(seed);

@@ -232,6 +232,20 @@ TEST(Shading, UnlitShowsItsColourAndEmissiveGlows) {
     EXPECT_EQ(look_along(ready, {4, 0, 1}, {0, 0, -1}).radiance, Vec3(3, 2, 1));
 }
 
+TEST(Shading, UnlitColoursAreNotBentByExposureAndToneCurve) {
+    Scene scene;
+    Material unlit = matte({0.2f, 0.4f, 0.95f});
+    unlit.unlit = true;
+    scene.materials = {unlit};
+    add(scene, quad({-1, -1, 0}, {2, 0, 0}, {0, 2, 0}, 0));
+    RenderScene ready(scene, black());
+    for (DisplayTransform const& display : {DisplayTransform(0.01f), DisplayTransform(30, ToneCurve::linear)}) {
+        ready.set_display(display);
+        Vec3 const shown = display.shown(look_along(ready, {0, 0, 1}, {0, 0, -1}).radiance);
+        EXPECT_LT(glm::distance(shown, Vec3(0.2f, 0.4f, 0.95f)), 1e-4f);
+    }
+}
+
 TEST(Shading, OcclusionDarkensTheSurroundingsOnly) {
     auto radiance = [](bool sun, int occlusion) {
         Scene scene;

@@ -42,7 +42,7 @@ TEST_F(AdmissionTest, WhoWasCutAsTheSceneWasReplacedBeginsAnew) {
     Hello hello{protocol_version, {}, coding::all};
     hello.ticket = enter(1, connections_[0], hello).ticket;
     connections_[0]->lose("cut", true);
-    admission_.forget_viewers();
+    admission_.forget_viewers(0);
     admission_.leave(1, sessions_[0].get());
     EXPECT_FALSE(enter(2, connections_[1], hello).resumed);
     EXPECT_FALSE(sessions_[0]->is_served());

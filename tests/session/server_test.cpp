@@ -323,8 +323,8 @@ TEST(Server, WhoKnowsTheTokenForItSetsTheClock) {
 /// A scene may take long to be made ready, and nobody is heard while the server does so.
 TEST(Server, ASceneThatReplacesAnotherIsReadyWhenItIsGiven) {
     auto const load = [](std::string const& name) {
-        auto loaded = std::make_unique<LoadedScene>(triangle_scene(), std::vector<Index>{}, std::nullopt, 0.0f,
-                                                    [](std::string_view, double) {});
+        auto loaded = std::make_unique<LoadedScene>(triangle_scene(), std::vector<Index>{}, std::nullopt,
+                                                    LookOptions{.exposure_ev = 0.0f}, [](std::string_view, double) {});
         loaded->welcome.scene_name = name;
         return loaded;
     };

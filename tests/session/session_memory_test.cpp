@@ -38,6 +38,16 @@ TEST(SessionMemory, RefusesWhatIsBeyondTheRest) {
     EXPECT_FALSE(memory.reserve(3, large, true));
 }
 
+/// The scene that is loaded again may have full light, where direct light was chosen before.
+TEST(SessionMemory, PixelsOfAnotherSceneMayTakeMore) {
+    Viewport const viewport{256, 256};
+    SessionMemory memory(session_bytes(viewport, true) + 10 * std::size_t{256 * 256});
+    EXPECT_FALSE(memory.reserve(1, viewport, true));
+    memory.release(1);
+    memory.set_more_per_pixel(17);
+    EXPECT_TRUE(memory.reserve(2, viewport, true));
+}
+
 TEST(SessionMemory, ASmallerPictureGivesNothingBack) {
     SessionMemory memory(session_bytes(large, true));
     EXPECT_FALSE(memory.reserve(1, large, true));

@@ -15,6 +15,14 @@ enum class LightMethod : std::uint8_t {
 
 /// The method that a word stands for. Throws InputError for other words.
 LightMethod parse_light_method(std::string const& word);
+/// Its word.
+char const* name_of(LightMethod method);
+
+/// Who says which method a scene has.
+enum class LightChoice : std::uint8_t {
+    told,
+    by_view ///< what the first camera sees: full where it looks other than direct, which costs half as much
+};
 
 struct LightOptions {
     LightMethod method = LightMethod::direct;

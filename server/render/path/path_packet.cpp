@@ -143,7 +143,8 @@ void PathPacket::add_emission(LaneMask present) {
     for_each_lane(present, [&](int i) {
         Vec3 const through = throughput_.get(i) * surfaces_.alpha[i];
         if ((surfaces_.unlit >> i & 1) != 0) {
-            add(i, through * surfaces_.base_color.get(i));
+            Vec3 const color = surfaces_.base_color.get(i);
+            add(i, through * (bounced(i) ? color : scene_.unlit_radiance(color)));
             return;
         }
         Vec3 const emissive = surfaces_.emissive.get(i);

@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "common/tone_inverse.h"
 #include "server/render/light/environment.h"
 #include "server/render/light/lamp_sizes.h"
 #include "server/render/light/light.h"
@@ -39,9 +40,14 @@ struct PreparedScene {
     SplitSumTable split_sum;
     LightCache* light_cache = nullptr; ///< says what arrives from all around; null: the environment, unshadowed
     LampSizes lamp_sizes; ///< of `lights`
+    /// By which the colours of unlit surfaces are seen as they are. The exposure that a viewer adds counts.
+    DisplayTransform display{1, ToneCurve::linear};
     bool moves = false; ///< something moves: tracing keeps which surface gives a sample its depth
     bool throws_moving_shadows = false; ///< something moves so fast that its shadow does not stay
     bool see_through = false; ///< some material lets rays pass: without, no ray is ever continued behind a surface
+
+    /// The radiance of an unlit surface of this colour, as the camera sees it.
+    Vec3 unlit_radiance(Vec3 const& color) const { return radiance_shown_as(color, display.curve) / display.exposure; }
 };
 
 } // namespace framelet

@@ -134,6 +134,10 @@ void RenderScene::set_light(LightCache* cache, LampSizes sizes) {
     prepared_->lamp_sizes = sizes;
 }
 
+void RenderScene::set_display(DisplayTransform const& display) {
+    prepared_->display = display;
+}
+
 void RenderScene::add_meshes(Progress const& progress) {
     std::map<Index, std::uint32_t> shared;
     double const all = static_cast<double>(std::max<std::size_t>(triangles_to_build(scene_), 1));

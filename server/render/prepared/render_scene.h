@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/color.h"
 #include "server/render/light/environment.h"
 #include "server/render/light/lamp_sizes.h"
 #include "server/render/surface/geometry.h"
@@ -44,6 +45,9 @@ public:
     /// From now on light from all around is of this cache, which must outlive all rendering; null: of the environment.
     /// Punctual lights have these sizes.
     void set_light(LightCache* cache, LampSizes sizes);
+
+    /// From now on unlit surfaces have the radiance that is shown as their colour by this. At first it is their colour.
+    void set_display(DisplayTransform const& display);
 
     PreparedScene const& prepared() const { return *prepared_; }
 

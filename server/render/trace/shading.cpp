@@ -163,7 +163,7 @@ void shade_lights(PreparedScene const& scene, SurfacePacket const& s, LaneMask a
     if (scene.moves) {
         out.lost_light = strongest.lost;
     }
-    for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, s.base_color.get(i)); });
+    for_each_lane(active & s.unlit, [&](int i) { out.radiance.set(i, scene.unlit_radiance(s.base_color.get(i))); });
     if (scene.see_through) {
         for (int i = 0; i < lanes; ++i) {
             out.radiance.x[i] *= s.alpha[i];

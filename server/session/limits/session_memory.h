@@ -26,6 +26,8 @@ public:
     explicit SessionMemory(std::size_t budget, std::size_t more_per_pixel = 0)
         : budget_(budget), more_per_pixel_(more_per_pixel) {}
 
+    /// From now on pixels take so much besides.
+    void set_more_per_pixel(std::size_t bytes) { more_per_pixel_ = bytes; }
     /// Sets aside what the session takes with a picture of this size, or says in one line why not. What it has from a
     /// larger picture stays its own until it ends: memory is used again rather than given back.
     std::optional<std::string> reserve(std::uint64_t session, Viewport viewport, bool predicts);
@@ -35,7 +37,8 @@ public:
     void pass(std::uint64_t from, std::uint64_t to);
 
 private:
-    std::size_t const budget_, more_per_pixel_;
+    std::size_t const budget_;
+    std::size_t more_per_pixel_;
     std::size_t reserved_ = 0;
     std::map<std::uint64_t, std::size_t> sessions_;
 };

@@ -173,6 +173,7 @@ json answer_replay(LiveVerbOptions& options) {
         environment = Environment::load(served.environment);
     }
     RenderScene render_scene(scene, std::move(environment));
+    render_scene.set_display({served.exposure, served.tone_curve});
     PosedScene posed(scene, served.clips, render_scene, served.light);
     ReplayFigures const figures = replay(log, posed);
     std::printf("%s: %.1f s, %llu turns, %llu batches, %llu bytes: ", scene.name.c_str(), figures.seconds,
