@@ -64,6 +64,7 @@ Picture direct_render(Camera const& camera, Viewport viewport, SceneTime time) {
     Scene const scene = import_scene(scene_file);
     auto const clips = default_clips(scene);
     RenderScene render_scene(scene, std::nullopt);
+    render_scene.set_display(1);
     render_scene.set_pose(evaluate_pose(scene, clips, time));
     return render_picture(render_scene, camera, viewport, 1, 8);
 }
@@ -168,6 +169,7 @@ TEST(Loopback, LightByPathsIsTheSameForAllAtRest) {
     Scene const scene = import_scene(scene_file);
     ScenePose const pose = evaluate_pose(scene, default_clips(scene), 0);
     RenderScene render_scene(scene, std::nullopt);
+    render_scene.set_display(1);
     render_scene.set_pose(pose);
     PathOptions options;
     options.paths = 1024;

@@ -55,6 +55,7 @@ struct RecordedSession {
         std::vector<std::string> const& files = log.served().scenes;
         Scene const scene = import_scenes(std::vector<std::filesystem::path>(files.begin(), files.end()));
         RenderScene render_scene(scene, std::nullopt);
+        render_scene.set_display({log.served().exposure, log.served().tone_curve});
         PosedScene posed(scene, log.served().clips, render_scene, log.served().light);
         return replay(log, posed);
     }
