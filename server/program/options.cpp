@@ -42,6 +42,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     Options options;
     bool insecure = false;
     std::string light;
+    std::vector<std::string> proxied;
     std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -134,6 +135,18 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option("--tls-cert", options.server.tls_certificate, "Certificate chain (PEM): encrypt connections")
         ->type_name("FILE");
     app.add_option("--tls-key", options.server.tls_key, "Private key (PEM) of the certificate")->type_name("FILE");
+    app.add_option(
+           "--proxied", proxied,
+           "Proxy in front of the server, or the network of several: connections from there begin with a header "
+           "of PROXY protocol (version 2) that says who connects; may be given several times")
+        ->type_name("ADDRESS[/BITS]")
+        ->allow_extra_args(false); // what follows it is a scene
+    app.add_option_function<int>(
+           "--drain", [&options](int seconds) { options.server.drain = std::chrono::seconds(seconds); },
+           "On SIGTERM say at --metrics that no more viewers are welcome, and end when all have left, or after so long")
+        ->type_name("SECONDS")
+        ->check(number_in(0, 86400))
+        ->default_str("0");
     app.add_flag("--insecure", insecure, "Let everybody in, and listen beyond this machine without token and TLS");
 
     app.option_defaults()->group("Browsers");
@@ -190,7 +203,8 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.option_defaults()->group("Log and recordings");
     CLI::Option* const metrics =
         app.add_option("--metrics", options.metrics_port,
-                       "Answer HTTP at this port: /metrics for Prometheus, /health; 0 picks a free one")
+                       "Answer HTTP at this port: /metrics for Prometheus, /health, /ready (another viewer is "
+                       "welcome); 0 picks a free one")
             ->type_name("PORT")
             ->check(number_in(0, 65535));
     app.add_option("--metrics-bind", options.metrics_bind,
@@ -228,6 +242,9 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         if (!light.empty()) {
             options.look.light_choice = LightChoice::told;
             options.look.light.method = parse_light_method(light);
+        }
+        for (std::string const& network : proxied) {
+            options.server.proxies.add(network);
         }
         options.look.tone_curve = options.server.loop.stream.tone_curve = parse_tone_curve(tone_curve);
         if (!options.import.scene.empty() && options.scenes.size() > 1) {

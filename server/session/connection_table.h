@@ -21,6 +21,7 @@ struct Connection {
     std::shared_ptr<Session> session;
     std::shared_ptr<FramedStream> stream;
     std::string source; ///< as `source_of` has it
+    std::string peer; ///< where it comes from, for the log
     std::unique_ptr<boost::asio::steady_timer> start; ///< of a delayed start; null: it starts at once
     bool admitted = false; ///< its viewer was let in
     bool was_ended = false; ///< its session had ended at the last heartbeat, and it is here all the same

@@ -30,6 +30,7 @@
 #include "server/session/loaded_scene.h"
 #include "server/session/loop/contained.h"
 #include "server/session/loop/loop_thread.h"
+#include "server/session/proxy_hall.h"
 #include "server/session/welcome.h"
 
 namespace framelet {
@@ -67,7 +68,7 @@ struct Server::Impl {
     std::optional<HandshakeThread> handshakes; ///< goes after the io_context; nothing: there is no TLS
     std::unique_ptr<Listener> const listener;
     asio::io_context& io = listener->io;
-    asio::steady_timer timer{io}, clock_timer{io}, leaving_timer{io};
+    asio::steady_timer timer{io}, clock_timer{io}, leaving_timer{io}, drain_timer{io};
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
@@ -76,6 +77,7 @@ struct Server::Impl {
     ClockRequests clock_requests; ///< for the io thread only, as all that follows unless it says otherwise
     Admission admission;
     WaitingRoom waiting;
+    ProxyHall proxies;
     LogLimit turned_away, failures; ///< of what the log says of such connections, and of what fails for a moment
     LogLimit come{viewer_lines}, gone{viewer_lines}; ///< of viewers
     std::minstd_rand random{std::random_device{}()};
@@ -88,6 +90,8 @@ struct Server::Impl {
     bool ends = false; ///< the server ends: no heartbeat follows
 
     std::atomic<std::uint64_t> sent_bytes = 0, viewers = 0, scenes = 1; ///< counted for those who watch over the server
+    std::atomic<float> busy = 0; ///< as viewers are told
+    std::atomic<bool> drains = false; ///< it serves those who are here, and ends then
     std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
     BusyShare busy_share;
 
@@ -100,7 +104,7 @@ struct Server::Impl {
           admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000,
                      light_bytes(scene)},
                     [this] { loop.wake(); }),
-          loop(make_loop(scene, given.loop)) {
+          proxies(given.proxies), loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
             handshakes.emplace();
@@ -153,16 +157,24 @@ struct Server::Impl {
         }
     }
 
+    void accept(tcp::socket socket) {
+        proxies.take(
+            std::move(socket),
+            [this](tcp::socket from, asio::ip::address const& address, std::string const& peer) {
+                add_connection(std::move(from), source_of(address), peer);
+            },
+            [this](std::string const& reason) {
+                if (auto const more = turned_away.next(steady_clock::now())) {
+                    spdlog::warn("{}{}", reason, *more);
+                }
+            });
+    }
+
     /// Adds a connection. Where it throws, mostly for want of memory, nothing is left of the connection.
-    void add_connection(tcp::socket socket) {
-        boost::system::error_code error;
-        auto const endpoint = socket.remote_endpoint(error);
-        if (error) {
-            return; // it is gone already
-        }
+    void add_connection(tcp::socket socket, std::string const& source, std::string const& peer) {
         std::uint64_t const id = next_id++;
         try {
-            add_connection(id, std::move(socket), endpoint);
+            add_connection(id, std::move(socket), source, peer);
         } catch (...) {
             if (Connection* const found = connections.find(id)) {
                 found->stream->close(); // it may have begun to read
@@ -172,8 +184,7 @@ struct Server::Impl {
         }
     }
 
-    void add_connection(std::uint64_t id, tcp::socket socket, tcp::endpoint const& endpoint) {
-        std::string const source = source_of(endpoint.address());
+    void add_connection(std::uint64_t id, tcp::socket socket, std::string const& source, std::string const& peer) {
         if (auto const dropped = waiting.enter(id, source, std::generate_canonical<double, 32>(random))) {
             auto const session = connections.find(*dropped)->session;
             session->start(); // it may have been delayed, and is told nothing before that
@@ -182,6 +193,7 @@ struct Server::Impl {
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;
         connection.source = source;
+        connection.peer = peer;
         connection.stream = tls ? tls_server_stream(std::move(socket), tls, handshakes->executor(), options.web)
                                 : plain_stream(std::move(socket), options.web);
         connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
@@ -237,8 +249,7 @@ struct Server::Impl {
         connection.admitted = true;
         connection.session->set_number(++viewers);
         if (auto const more = come.next(now)) {
-            spdlog::info("viewer {} connects from {}{}", connection.session->number(), connection.session->peer(),
-                         *more);
+            spdlog::info("viewer {} connects from {}{}", connection.session->number(), connection.peer, *more);
         }
         waiting.leave(id);
         Welcome answer = welcome;
@@ -293,6 +304,9 @@ struct Server::Impl {
         if (was_viewer) {
             tell_of_leaving();
         }
+        if (drains && !ends && connections.open_sessions().empty()) {
+            shut_down();
+        }
     }
 
     /// Has the status sent, since it may be another's turn to control; not for each that leaves, who may be many.
@@ -333,7 +347,7 @@ struct Server::Impl {
 
     void send_status() {
         auto const sessions = connections.open_sessions();
-        float const busy = busy_share.update(loop.busy_seconds(), steady_clock::now());
+        busy = busy_share.update(loop.busy_seconds(), steady_clock::now());
         for (auto const& session : sessions) {
             Status status = session->status();
             status.clock = clock.state(steady_clock::now());
@@ -422,6 +436,8 @@ struct Server::Impl {
         ServerFigures now;
         now.healthy = steady_clock::now() - last_beat.load() < healthy_pause;
         now.sessions = connections.open_sessions().size();
+        now.ready = now.healthy && !drains && now.sessions < options.max_sessions;
+        now.busy = static_cast<double>(busy.load());
         now.viewers = viewers;
         now.scenes = scenes;
         now.sent_bytes = sent_bytes;
@@ -439,8 +455,25 @@ struct Server::Impl {
                 wait_for_signal(hang_up);
                 return;
             }
+            if (signal == SIGTERM && options.drain.count() > 0 && !drains && !connections.open_sessions().empty()) {
+                drain();
+                wait_for_signal(hang_up);
+                return;
+            }
             spdlog::info("ending on signal {}", signal);
             shut_down();
+        });
+    }
+
+    /// Says that it is not ready any more, and ends when its viewers have left, or after a while.
+    void drain() {
+        spdlog::info("ending in {} s, or when all viewers have left", options.drain.count());
+        drains = true;
+        drain_timer.expires_after(options.drain);
+        drain_timer.async_wait([this](boost::system::error_code error) {
+            if (!error) {
+                shut_down();
+            }
         });
     }
 
@@ -451,6 +484,8 @@ struct Server::Impl {
         timer.cancel();
         clock_timer.cancel();
         leaving_timer.cancel();
+        drain_timer.cancel();
+        proxies.close();
         signals.cancel(ignored);
         for (auto const& [id, connection] : connections.all()) {
             connection.session->close("the server shuts down", true);
@@ -499,7 +534,7 @@ void Server::take_signals(std::function<bool()> hang_up) {
 }
 
 void Server::run() {
-    impl_->listener->accept([this](tcp::socket socket) { impl_->add_connection(std::move(socket)); });
+    impl_->listener->accept([this](tcp::socket socket) { impl_->accept(std::move(socket)); });
     impl_->beat();
     impl_->loop.start();
     try {

@@ -2,6 +2,7 @@
 // threads.
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <vector>
 
 #include "server/session/figures/server_figures.h"
+#include "server/session/limits/networks.h"
 #include "server/session/loop/session_loop.h"
 
 namespace framelet {
@@ -30,6 +32,8 @@ struct ServerOptions {
     std::size_t max_sessions = 8;
     std::size_t session_megabytes = 4096; ///< what the pictures of all viewers may take together
     bool paused = false; ///< the scene clock stands at 0 at first
+    Networks proxies; ///< who connects from there says for whom, by a header of [PROXY protocol]
+    std::chrono::seconds drain{0}; ///< after SIGTERM it serves on for so long, while nobody is sent to it any more
     LoopOptions loop;
 };
 

@@ -66,7 +66,6 @@ public:
     /// The viewer's number, for people: until one is set, that of the connection. Set it before the viewer is let in.
     std::uint64_t number() const { return number_; }
     void set_number(std::uint64_t number) { number_ = number; }
-    std::string peer() const { return stream_->peer(); }
 
     // The following may be called from any thread:
     /// Ends the session: the server cannot go on with this viewer, which is told the reason, one line, if `tells`, as

@@ -41,9 +41,15 @@ http::response<http::string_body> answer_to(http::request<http::empty_body> cons
     } else if (target == "/health") {
         answer.result(figures.healthy ? http::status::ok : http::status::service_unavailable);
         answer.body() = figures.healthy ? "ok\n" : "the server does not get on\n";
+    } else if (target == "/ready") {
+        // HAProxy takes 404 as the wish for no more viewers, and 503 as the end of those that are here.
+        answer.result(!figures.healthy ? http::status::service_unavailable
+                      : figures.ready  ? http::status::ok
+                                       : http::status::not_found);
+        answer.body() = figures.ready ? "ready\n" : "no more viewers now\n";
     } else {
         answer.result(http::status::not_found);
-        answer.body() = "there are /metrics and /health\n";
+        answer.body() = "there are /metrics, /health and /ready\n";
     }
     answer.prepare_payload();
     if (request.method() == http::verb::head) { // as long as it would be, but without it

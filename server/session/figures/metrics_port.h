@@ -1,5 +1,6 @@
 // The port at which Prometheus and health checks ask, by HTTP. A resource with a thread of its own, so that it answers
-// while the server cannot. In: figures when they are asked for. Out: /metrics and /health.
+// while the server cannot. In: figures when they are asked for. Out: /metrics, /health and
+// /ready.
 #pragma once
 
 #include <cstdint>

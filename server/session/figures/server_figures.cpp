@@ -15,6 +15,9 @@ std::string metrics_text(ServerFigures const& f) {
             << name << ' ' << value << '\n';
     };
     add("framelet_healthy", "gauge", "1 where the server does what it is there for.", f.healthy ? 1 : 0);
+    add("framelet_ready", "gauge", "1 where another viewer is welcome: it is healthy, not full, and does not end.",
+        f.ready ? 1 : 0);
+    add("framelet_busy", "gauge", "Share of the last second that there was something to do for viewers.", f.busy);
     add("framelet_sessions", "gauge", "Viewers that are here.", f.sessions);
     add("framelet_viewers_total", "counter", "Viewers that were let in, again each time they came back.", f.viewers);
     add("framelet_scene_loads_total", "counter", "Scenes that were served, one after the other.", f.scenes);

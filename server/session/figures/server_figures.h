@@ -11,6 +11,8 @@ namespace framelet {
 /// Figures since the server's start.
 struct ServerFigures {
     bool healthy = false; ///< its threads do what they are there for
+    bool ready = false; ///< another viewer is welcome
+    double busy = 0; ///< share of the last second in which there was something to do, about
     std::size_t sessions = 0; ///< that are open
     std::uint64_t viewers = 0; ///< viewers that were let in
     std::uint64_t scenes = 0; ///< scenes that were served
