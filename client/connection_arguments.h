@@ -3,8 +3,8 @@
 
 #include <string>
 
-#include "client/core/connection/server_address.h"
 #include "common/command_line/command_line.h"
+#include "protocol/connection/server_address.h"
 
 namespace framelet {
 

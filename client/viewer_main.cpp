@@ -5,7 +5,6 @@
 
 #include "client/connection_arguments.h"
 #include "client/core/camera/camera_path.h"
-#include "client/core/connection/unknown_certificate.h"
 #include "client/display_arguments.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/painter.h"
@@ -21,6 +20,7 @@
 #include "common/error.h"
 #include "common/large_blocks.h"
 #include "common/program_line.h"
+#include "protocol/connection/unknown_certificate.h"
 #include "protocol/stream/token.h"
 
 namespace {

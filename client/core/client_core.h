@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "client/core/client_statistics.h"
-#include "client/core/connection/server_connection.h"
 #include "client/core/picture/making_time.h"
 #include "client/core/picture/session_pictures.h"
 #include "client/core/session/arrived_batches.h"
@@ -22,6 +21,7 @@
 #include "client/core/session/server_state.h"
 #include "client/core/session/told_evictions.h"
 #include "protocol/codec/batch_codec.h"
+#include "protocol/connection/server_connection.h"
 
 namespace framelet {
 

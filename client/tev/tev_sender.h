@@ -11,9 +11,9 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 
-#include "client/core/connection/server_address.h"
 #include "client/frames/frame_sink.h"
 #include "common/camera.h"
+#include "protocol/connection/server_address.h"
 
 namespace framelet {
 

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "client/core/connection/server_connection.h"
+#include "protocol/connection/server_connection.h"
 
 namespace framelet {
 

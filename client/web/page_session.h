@@ -11,12 +11,12 @@
 
 #include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
-#include "client/core/connection/back_off.h"
 #include "client/gpu/canvas_choice.h"
 #include "client/viewer/bookmark_list.h"
 #include "client/web/frame_inbox.h"
 #include "client/web/page_connection.h"
 #include "client/web/page_screen.h"
+#include "protocol/connection/back_off.h"
 
 namespace framelet {
 

@@ -1,5 +1,5 @@
 // The web build's ServerConnection: all of it is called in the page's one thread.
-#include "client/core/connection/server_connection.h"
+#include "protocol/connection/server_connection.h"
 
 #include <utility>
 

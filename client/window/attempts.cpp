@@ -3,10 +3,10 @@
 #include <thread>
 #include <utility>
 
-#include "client/core/connection/token_refusal.h"
 #include "client/window/window.h"
 #include "common/error.h"
 #include "common/program_line.h"
+#include "protocol/connection/token_refusal.h"
 
 namespace framelet {
 

@@ -10,9 +10,9 @@
 #include <string>
 
 #include "client/core/client_core.h"
-#include "client/core/connection/back_off.h"
-#include "client/core/connection/unknown_certificate.h"
 #include "client/window/overlay/overlay_content.h"
+#include "protocol/connection/back_off.h"
+#include "protocol/connection/unknown_certificate.h"
 
 namespace framelet {
 

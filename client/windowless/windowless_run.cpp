@@ -12,7 +12,6 @@
 
 #include "client/core/camera/camera_path.h"
 #include "client/core/client_core.h"
-#include "client/core/connection/unknown_certificate.h"
 #include "client/core/picture/display_timing.h"
 #include "client/frames/frame_choice.h"
 #include "client/frames/frame_log.h"
@@ -28,6 +27,7 @@
 #include "common/error.h"
 #include "common/files/picture_writer.h"
 #include "common/program_line.h"
+#include "protocol/connection/unknown_certificate.h"
 
 namespace framelet {
 namespace {

@@ -34,6 +34,7 @@ struct Ticket {
 /// Bits for what a viewer can read; a server sends nothing else. `Hello::codings` is a sum of these; bits that a server
 /// does not know mean nothing to it.
 namespace coding {
+inline constexpr std::uint32_t none = 0; ///< no batches: it only hears the scene's clock, and may set it
 inline constexpr std::uint32_t exact_colour = 1; ///< every viewer can read it
 inline constexpr std::uint32_t haar_colour = 2; ///< framelets with a QP
 inline constexpr std::uint32_t predicted_colour = 8; ///< framelets predicted from those of earlier batches

@@ -70,6 +70,11 @@ void read_files(Options& options) {
     if (!options.control_token_file.empty()) {
         server.control_token = read_token_file(options.control_token_file);
     }
+    if (server.clock_from) {
+        server.clock_from->token = server.control_token.empty() ? server.token : server.control_token;
+        server.clock_from->tls = !server.tls_certificate.empty();
+        server.clock_from->authority_file = server.tls_certificate;
+    }
     if (!server.tls_certificate.empty()) {
         make_tls_server_context(server.tls_certificate, server.tls_key);
         if (is_readable_by_all(server.tls_key)) {

@@ -43,6 +43,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     bool insecure = false;
     std::string light;
     std::vector<std::string> proxied;
+    std::string clock_from;
     std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -110,6 +111,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit")
             ->configurable(false);
     app.add_flag("--json", options.json, "With --info: as JSON")->needs(info)->configurable(false);
+    app.add_option("--clock-from", clock_from,
+                   "Follow the clock of another server of this scene, as of several behind one proxy; this server's "
+                   "token, and its certificate where it has one, are that one's, too")
+        ->type_name("HOST[:PORT]");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
 
     app.option_defaults()->group("Connections");
@@ -242,6 +247,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         if (!light.empty()) {
             options.look.light_choice = LightChoice::told;
             options.look.light.method = parse_light_method(light);
+        }
+        if (!clock_from.empty()) {
+            options.server.clock_from.emplace().server = parse_server_address(clock_from);
+            options.server.clock_from->insecure = insecure;
         }
         for (std::string const& network : proxied) {
             options.server.proxies.add(network);

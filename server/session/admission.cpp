@@ -49,12 +49,19 @@ std::shared_ptr<Session> Admission::session_left_behind(Hello const& hello) {
 }
 
 void Admission::seat(std::shared_ptr<Session> const& session, Hello const& hello, Welcome& answer) {
+    bool const knows_token = knows_control_token(hello);
+    if (hello.codings == coding::none) {
+        if (knows_token) {
+            control_.enter(session->id(), 0, knows_token);
+        }
+        answer.controls = controls(session->id());
+        return;
+    }
     Tickets::Holder* holder = hello.ticket ? tickets_.find(hello.ticket) : nullptr;
     if (holder != nullptr && !resume(*holder, session, hello)) {
         give_up(*holder);
         holder = nullptr;
     }
-    bool const knows_token = knows_control_token(hello);
     if (holder != nullptr) {
         answer.resumed = true;
         answer.evicted = session->status().evicted;

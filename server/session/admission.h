@@ -42,7 +42,8 @@ public:
     std::optional<Failure> refusal(Hello const& hello, std::string const& source, Time now);
     /// The session of the viewer that says it comes back, where the server has not noticed yet that it had gone.
     std::shared_ptr<Session> session_left_behind(Hello const& hello);
-    /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own.
+    /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own. Who hears
+    /// the clock only has nothing to come back to, and takes no turn to set it.
     void seat(std::shared_ptr<Session> const& session, Hello const& hello, Welcome& answer);
     /// True where this session may set the scene's clock.
     bool controls(std::uint64_t id) const { return control_.controls(id); }

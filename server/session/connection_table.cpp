@@ -18,10 +18,18 @@ void ConnectionTable::erase(std::uint64_t id) {
 }
 
 std::vector<std::shared_ptr<Session>> ConnectionTable::open_sessions() const {
+    return open_sessions(false);
+}
+
+std::vector<std::shared_ptr<Session>> ConnectionTable::clock_sessions() const {
+    return open_sessions(true);
+}
+
+std::vector<std::shared_ptr<Session>> ConnectionTable::open_sessions(bool clock_only) const {
     std::scoped_lock const lock(mutex_);
     std::vector<std::shared_ptr<Session>> open;
     for (auto const& [id, connection] : connections_) {
-        if (connection.session->is_open()) {
+        if (connection.session->is_open() && connection.session->hears_clock_only() == clock_only) {
             open.push_back(connection.session);
         }
     }

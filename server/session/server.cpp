@@ -19,7 +19,7 @@
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
 #include "server/session/admission.h"
-#include "server/session/clock/clock_requests.h"
+#include "server/session/clock/served_clock.h"
 #include "server/session/connection_table.h"
 #include "server/session/figures/busy_share.h"
 #include "server/session/limits/farewells.h"
@@ -50,6 +50,7 @@ constexpr std::chrono::milliseconds leaving_told_after{100};
 constexpr std::size_t viewer_lines = 20;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
+constexpr std::size_t most_followers = 64; ///< servers that follow this one's clock
 
 /// What a picture at rest takes a pixel for its light.
 std::size_t light_bytes(PosedScene const& scene) {
@@ -68,13 +69,12 @@ struct Server::Impl {
     std::optional<HandshakeThread> handshakes; ///< goes after the io_context; nothing: there is no TLS
     std::unique_ptr<Listener> const listener;
     asio::io_context& io = listener->io;
-    asio::steady_timer timer{io}, clock_timer{io}, leaving_timer{io}, drain_timer{io};
+    asio::steady_timer timer{io}, leaving_timer{io}, drain_timer{io};
     asio::signal_set signals{io};
     ServerOptions const options;
     std::shared_ptr<asio::ssl::context> tls;
     Welcome welcome;
-    SceneClock clock;
-    ClockRequests clock_requests; ///< for the io thread only, as all that follows unless it says otherwise
+    ServedClock clock; ///< for the io thread only, as all that follows unless it says otherwise
     Admission admission;
     WaitingRoom waiting;
     ProxyHall proxies;
@@ -100,7 +100,8 @@ struct Server::Impl {
 
     Impl(PosedScene& scene, Welcome told, ServerOptions const& given, std::unique_ptr<Listener> bound)
         : listener(std::move(bound)), options(given), welcome(std::move(told)),
-          clock(!given.paused, steady_clock::now()),
+          clock(
+              io, !given.paused, [this] { tell_of_clock(); }, [this] { send_status(); }),
           admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000,
                      light_bytes(scene)},
                     [this] { loop.wake(); }),
@@ -120,7 +121,7 @@ struct Server::Impl {
 
     std::unique_ptr<SessionLoop> make_loop(PosedScene& scene, LoopOptions const& loop_options) {
         SessionLoop::Events events{[this] { return connections.open_sessions(); }, [this] { post_status(); }};
-        return std::make_unique<SessionLoop>(scene, clock, loop_options, std::move(events));
+        return std::make_unique<SessionLoop>(scene, clock.scene(), loop_options, std::move(events));
     }
 
     void replace_scene(std::shared_ptr<LoadedScene> next) {
@@ -217,8 +218,8 @@ struct Server::Impl {
         Session::Events events;
         events.admit = [this, id](Hello const& hello) { return admit(id, hello); };
         events.clock_request = [this, id](ClockRequest const& request) {
-            if (admission.controls(id)) {
-                set_clock(request);
+            if (controls(id)) {
+                clock.request(request);
             }
         };
         events.resize = [this, id](Viewport viewport, bool predicts) {
@@ -241,6 +242,9 @@ struct Server::Impl {
             before->cut();
             remove(before->id(), "it has come back by another connection");
         }
+        if (hello.codings == coding::none) {
+            return admit_follower(id, hello);
+        }
         if (connections.open_sessions().size() >= options.max_sessions) {
             return Failure{"the server has its " + std::to_string(options.max_sessions) +
                                " viewers already: try later or raise --max-sessions",
@@ -253,30 +257,27 @@ struct Server::Impl {
         }
         waiting.leave(id);
         Welcome answer = welcome;
-        answer.clock = clock.state(now);
+        answer.clock = clock.scene().state(now);
         admission.seat(connection.session, hello, answer);
+        answer.controls = controls(id);
         return answer;
     }
 
-    void set_clock(ClockRequest const& request) {
-        if (!clock_requests.add(request)) {
-            return;
+    /// Lets in a server that follows the clock.
+    std::variant<Welcome, Failure> admit_follower(std::uint64_t id, Hello const& hello) {
+        if (connections.clock_sessions().size() >= most_followers) {
+            return Failure{"too many servers follow this clock already", true};
         }
-        try {
-            clock_timer.expires_at(clock_requests.due());
-            clock_timer.async_wait([this](boost::system::error_code error) {
-                if (!error) {
-                    apply_clock_requests();
-                }
-            });
-        } catch (std::bad_alloc const&) {
-            apply_clock_requests(); // nobody would come for them later
-        }
+        waiting.leave(id);
+        Welcome answer = welcome;
+        answer.clock = clock.scene().state(steady_clock::now());
+        admission.seat(connections.find(id)->session, hello, answer);
+        return answer;
     }
 
-    void apply_clock_requests() {
-        auto const now = steady_clock::now();
-        clock.apply(clock_requests.take(now), now);
+    bool controls(std::uint64_t id) const { return admission.controls(id) && clock.takes_requests(); }
+
+    void tell_of_clock() {
         for (auto const& session : connections.open_sessions()) {
             session->note_clock_change();
         }
@@ -350,13 +351,19 @@ struct Server::Impl {
         busy = busy_share.update(loop.busy_seconds(), steady_clock::now());
         for (auto const& session : sessions) {
             Status status = session->status();
-            status.clock = clock.state(steady_clock::now());
+            status.clock = clock.scene().state(steady_clock::now());
             status.converged = status.converged && !(status.clock.playing && welcome.animation_duration > 0);
             status.samples_per_second = loop.samples_per_second();
             status.sessions = static_cast<std::uint32_t>(sessions.size());
-            status.controls = admission.controls(session->id());
+            status.controls = controls(session->id());
             status.busy = busy;
             session->send(status);
+        }
+        for (auto const& follower : connections.clock_sessions()) {
+            Status status;
+            status.clock = clock.scene().state(steady_clock::now());
+            status.controls = controls(follower->id());
+            follower->send(status);
         }
     }
 
@@ -482,7 +489,7 @@ struct Server::Impl {
         ends = true;
         listener->close();
         timer.cancel();
-        clock_timer.cancel();
+        clock.stop();
         leaving_timer.cancel();
         drain_timer.cancel();
         proxies.close();
@@ -536,6 +543,9 @@ void Server::take_signals(std::function<bool()> hang_up) {
 void Server::run() {
     impl_->listener->accept([this](tcp::socket socket) { impl_->accept(std::move(socket)); });
     impl_->beat();
+    if (impl_->options.clock_from) {
+        impl_->clock.follow(*impl_->options.clock_from);
+    }
     impl_->loop.start();
     try {
         impl_->run_io();

@@ -6,9 +6,11 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "protocol/connection/server_address.h"
 #include "server/session/figures/server_figures.h"
 #include "server/session/limits/networks.h"
 #include "server/session/loop/session_loop.h"
@@ -32,6 +34,7 @@ struct ServerOptions {
     std::size_t max_sessions = 8;
     std::size_t session_megabytes = 4096; ///< what the pictures of all viewers may take together
     bool paused = false; ///< the scene clock stands at 0 at first
+    std::optional<ConnectionOptions> clock_from; ///< the server whose clock the scene's follows
     Networks proxies; ///< who connects from there says for whom, by a header of [PROXY protocol]
     std::chrono::seconds drain{0}; ///< after SIGTERM it serves on for so long, while nobody is sent to it any more
     LoopOptions loop;

@@ -254,6 +254,9 @@ std::optional<std::string> Session::overdue(std::chrono::steady_clock::time_poin
         auto const most = stream_->asks_for_files() ? files_timeout : hello_timeout;
         return waiting > most ? std::optional("no Hello within the time for it") : std::nullopt;
     }
+    if (codings_ == coding::none) {
+        return std::nullopt;
+    }
     if (camera_number_ == 0) {
         return waiting > camera_timeout ? std::optional("no camera within the time for it") : std::nullopt;
     }
@@ -273,6 +276,10 @@ void Session::receive(Message message) {
     }
     if (!open) {
         receive_hello(message);
+    } else if (hears_clock_only() && !std::holds_alternative<ClockRequest>(message) &&
+               !std::holds_alternative<Failure>(message)) {
+        close("unexpected message");
+        events_.ended("who hears the clock only has sent something else");
     } else if (auto const* const camera = std::get_if<CameraUpdate>(&message)) {
         receive_camera(*camera);
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&message)) {

@@ -72,6 +72,8 @@ public:
     /// is whoever waits for `ended`.
     void end(std::string const& reason, bool again = false, bool tells = true);
     bool is_open() const;
+    /// True where its viewer reads no pictures: it hears the scene's clock, as servers do that follow it.
+    bool hears_clock_only() const { return codings() == coding::none; }
     bool has_spoken() const; ///< a message has come
     bool has_ended() const;
     /// True where it was cut, and is gone on with if the viewer comes back.

@@ -1,4 +1,4 @@
-#include "client/core/connection/address_race.h"
+#include "protocol/connection/address_race.h"
 
 #include <list>
 #include <optional>

@@ -1,4 +1,4 @@
-#include "client/core/connection/back_off.h"
+#include "protocol/connection/back_off.h"
 
 #include <gtest/gtest.h>
 

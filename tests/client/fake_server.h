@@ -17,8 +17,8 @@
 #include <boost/asio/steady_timer.hpp>
 #include <boost/asio/write.hpp>
 
-#include "client/core/connection/server_address.h"
 #include "protocol/codec/batch_codec.h"
+#include "protocol/connection/server_address.h"
 #include "protocol/stream/stream_opening.h"
 
 namespace framelet::test {

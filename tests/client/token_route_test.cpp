@@ -1,4 +1,4 @@
-#include "client/core/connection/token_route.h"
+#include "protocol/connection/token_route.h"
 
 #include <gtest/gtest.h>
 

@@ -4,8 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "client/core/connection/server_address.h"
 #include "common/error.h"
+#include "protocol/connection/server_address.h"
 #include "server/scene/scene_import.h"
 #include "tests/evaluation/codecs/link_emulator.h"
 #include "tests/loopback/process.h"

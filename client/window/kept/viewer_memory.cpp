@@ -7,9 +7,9 @@
 
 #include "client/core/camera/camera_controller.h"
 #include "client/core/client_core.h"
-#include "client/core/connection/server_address.h"
 #include "client/window/kept/user_files.h"
 #include "common/error.h"
+#include "protocol/connection/server_address.h"
 #include "protocol/stream/user_folders.h"
 
 namespace framelet {

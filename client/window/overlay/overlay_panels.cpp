@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <array>
 
-#include "client/core/connection/server_address.h"
 #include "client/core/drawn_over/age_colors.h"
 #include "client/viewer/commands.h"
 #include "client/window/overlay/overlay_text.h"
+#include "protocol/connection/server_address.h"
 
 namespace framelet {
 

@@ -7,7 +7,6 @@
 
 #include <tbb/global_control.h>
 
-#include "client/core/connection/server_connection.h"
 #include "client/core/picture/display_timing.h"
 #include "client/core/picture/making_time.h"
 #include "client/frames/frame_choice.h"
@@ -15,6 +14,7 @@
 #include "client/frames/frame_writer.h"
 #include "common/cpu_clock.h"
 #include "common/error.h"
+#include "protocol/connection/server_connection.h"
 #include "server/session/loop/priority.h"
 #include "server/session/server.h"
 #include "tests/evaluation/live/method_stream.h"

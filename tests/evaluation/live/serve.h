@@ -6,7 +6,7 @@
 #include <string>
 
 #include "client/core/camera/camera_path.h"
-#include "client/core/connection/server_address.h"
+#include "protocol/connection/server_address.h"
 #include "tests/evaluation/method.h"
 
 namespace framelet::bench {

@@ -4,7 +4,7 @@
 
 #include <boost/asio/ip/address.hpp>
 
-#include "client/core/connection/server_address.h"
+#include "protocol/connection/server_address.h"
 
 namespace framelet {
 

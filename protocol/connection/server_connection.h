@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "client/core/connection/server_address.h"
+#include "protocol/connection/server_address.h"
 #include "protocol/messages/message.h"
 
 namespace framelet {

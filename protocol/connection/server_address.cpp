@@ -1,4 +1,4 @@
-#include "client/core/connection/server_address.h"
+#include "protocol/connection/server_address.h"
 
 #include <algorithm>
 #include <array>

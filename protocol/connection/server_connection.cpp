@@ -1,4 +1,4 @@
-#include "client/core/connection/server_connection.h"
+#include "protocol/connection/server_connection.h"
 
 #include <chrono>
 #include <concepts>
@@ -13,12 +13,12 @@
 
 #include <boost/asio/steady_timer.hpp>
 
-#include "client/core/connection/address_race.h"
-#include "client/core/connection/back_off.h"
-#include "client/core/connection/token_refusal.h"
-#include "client/core/connection/token_route.h"
-#include "client/core/connection/unknown_certificate.h"
 #include "common/error.h"
+#include "protocol/connection/address_race.h"
+#include "protocol/connection/back_off.h"
+#include "protocol/connection/token_refusal.h"
+#include "protocol/connection/token_route.h"
+#include "protocol/connection/unknown_certificate.h"
 #include "protocol/messages/wrong_token.h"
 #include "protocol/stream/known_servers.h"
 #include "protocol/stream/local_token.h"
@@ -244,7 +244,7 @@ struct ServerConnection::Impl {
         });
         // The greeting is small; batches may be large, once we know who talks to us.
         attempted->start(std::move(events), max_upstream_message_bytes);
-        Hello hello{protocol_version, token, coding::all};
+        Hello hello{protocol_version, token, options.clock_only ? coding::none : coding::all};
         if (was_open && handlers.on_asking) {
             handlers.on_asking(hello);
         }
