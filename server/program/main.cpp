@@ -72,7 +72,7 @@ void read_files(Options& options) {
     }
     if (server.clock_from) {
         server.clock_from->token = server.control_token.empty() ? server.token : server.control_token;
-        server.clock_from->tls = !server.tls_certificate.empty();
+        server.clock_from->tls = server.clock_from->tls || !server.tls_certificate.empty();
         server.clock_from->authority_file = server.tls_certificate;
     }
     if (!server.tls_certificate.empty()) {

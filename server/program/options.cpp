@@ -111,9 +111,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         app.add_flag("--info", options.info, "Print what is in the scene and what was passed over, and exit")
             ->configurable(false);
     app.add_flag("--json", options.json, "With --info: as JSON")->needs(info)->configurable(false);
-    app.add_option("--clock-from", clock_from,
-                   "Follow the clock of another server of this scene, as of several behind one proxy; this server's "
-                   "token, and its certificate where it has one, are that one's, too")
+    app.add_option(
+           "--clock-from", clock_from,
+           "Follow the clock of another server of this scene, as of several behind one proxy, which has the "
+           "same token; encrypted and with the same certificate where this one has --tls-cert, or as tls://HOST")
         ->type_name("HOST[:PORT]");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
 
@@ -249,8 +250,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             options.look.light.method = parse_light_method(light);
         }
         if (!clock_from.empty()) {
-            options.server.clock_from.emplace().server = parse_server_address(clock_from);
-            options.server.clock_from->insecure = insecure;
+            ConnectionOptions& leader = options.server.clock_from.emplace();
+            leader.server = parse_server_address(clock_from);
+            leader.tls = asks_for_tls(clock_from);
+            leader.insecure = insecure;
         }
         for (std::string const& network : proxied) {
             options.server.proxies.add(network);

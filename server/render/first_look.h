@@ -22,7 +22,7 @@ FirstLook take_first_look(RenderScene const& scene, Camera const& camera, PathLi
 
 /// The exposure that shows this well: 1 where the log-average luminance of what is hit is within what a display shows,
 /// else what brings it to a middle grey; then as much less as keeps a tenth of what is hit, or half of the background,
-/// from being burnt, or as much more as lifts a picture that is all dark.
+/// from being burnt, the latter by one stop at most, or as much more as lifts a picture that is all dark.
 float auto_exposure(FirstLook const& look);
 float auto_exposure(RenderScene const& scene, Camera const& camera, PathLight const* light = nullptr);
 

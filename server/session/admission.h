@@ -58,6 +58,8 @@ public:
     /// Nobody who was let in so far comes back, whether the server has noticed that they are gone or not: what they had
     /// is of another scene. With this one each pixel takes `light_bytes` for its light.
     void forget_viewers(std::size_t light_bytes);
+    /// True where somebody who is away may come back.
+    bool expects_somebody() const { return tickets_.parked_count() > 0; }
     /// Gives up those who have been away for too long.
     void give_up_who_stay_away(Time now);
 

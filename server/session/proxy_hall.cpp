@@ -8,7 +8,6 @@
 #include <boost/asio/steady_timer.hpp>
 
 #include "protocol/stream/proxy_header.h"
-#include "server/session/listener.h"
 
 namespace framelet {
 
@@ -84,7 +83,7 @@ void ProxyHall::take(Socket socket, Enter enter, std::function<void(std::string 
         return; // it is gone already
     }
     if (!proxies_.contains(endpoint.address())) {
-        enter(std::move(socket), endpoint.address(), text_of(endpoint));
+        enter(std::move(socket), endpoint.address(), "");
         return;
     }
     std::erase_if(visits_, [](auto const& visit) { return visit.expired(); });

@@ -20,7 +20,7 @@ class ProxyHall {
 public:
     using Socket = boost::asio::ip::tcp::socket;
     using Address = boost::asio::ip::address;
-    /// `peer`: the same for the log.
+    /// `peer`: who a proxy says it is, for the log; else empty.
     using Enter = std::function<void(Socket, Address const& source, std::string const& peer)>;
 
     /// A proxy says at once for whom it connects.

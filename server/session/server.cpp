@@ -1,5 +1,6 @@
 #include "server/session/server.h"
 
+#include <algorithm>
 #include <atomic>
 #include <csignal>
 #include <exception>
@@ -50,7 +51,9 @@ constexpr std::chrono::milliseconds leaving_told_after{100};
 constexpr std::size_t viewer_lines = 20;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
-constexpr std::size_t most_followers = 64; ///< servers that follow this one's clock
+/// Servers that follow this one's clock, and those of them from one source.
+constexpr std::size_t most_followers = 64;
+constexpr std::ptrdiff_t most_followers_of_source = 16;
 
 /// What a picture at rest takes a pixel for its light.
 std::size_t light_bytes(PosedScene const& scene) {
@@ -124,8 +127,11 @@ struct Server::Impl {
         return std::make_unique<SessionLoop>(scene, clock.scene(), loop_options, std::move(events));
     }
 
+    /// True where no viewer is here, or away for a moment.
+    bool is_empty() const { return connections.open_sessions().empty() && !admission.expects_somebody(); }
+
     void replace_scene(std::shared_ptr<LoadedScene> next) {
-        if (ends) {
+        if (ends || drains) {
             return;
         }
         // All that may want for memory comes first: then either scene is served as a whole.
@@ -194,9 +200,9 @@ struct Server::Impl {
         ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_USER_TIMEOUT, &user_timeout_ms, sizeof user_timeout_ms);
         Connection connection;
         connection.source = source;
-        connection.peer = peer;
         connection.stream = tls ? tls_server_stream(std::move(socket), tls, handshakes->executor(), options.web)
                                 : plain_stream(std::move(socket), options.web);
+        connection.peer = peer.empty() ? connection.stream->peer() : peer;
         connection.session = std::make_shared<Session>(id, connection.stream, session_events(id));
         auto const session = connection.session;
         auto const delay = admission.delay(source, steady_clock::now());
@@ -265,13 +271,22 @@ struct Server::Impl {
 
     /// Lets in a server that follows the clock.
     std::variant<Welcome, Failure> admit_follower(std::uint64_t id, Hello const& hello) {
-        if (connections.clock_sessions().size() >= most_followers) {
+        Connection const& connection = *connections.find(id);
+        auto const of_source = std::ranges::count_if(connections.all(), [&](auto const& other) {
+            return other.second.source == connection.source && other.second.session->is_open() &&
+                   other.second.session->hears_clock_only();
+        });
+        if (of_source >= most_followers_of_source || connections.clock_sessions().size() >= most_followers) {
             return Failure{"too many servers follow this clock already", true};
         }
         waiting.leave(id);
+        if (auto const more = come.next(steady_clock::now())) {
+            spdlog::info("a server follows the clock, from {}{}", connection.peer, *more);
+        }
         Welcome answer = welcome;
         answer.clock = clock.scene().state(steady_clock::now());
-        admission.seat(connections.find(id)->session, hello, answer);
+        admission.seat(connection.session, hello, answer);
+        answer.controls = controls(id);
         return answer;
     }
 
@@ -305,9 +320,6 @@ struct Server::Impl {
         if (was_viewer) {
             tell_of_leaving();
         }
-        if (drains && !ends && connections.open_sessions().empty()) {
-            shut_down();
-        }
     }
 
     /// Has the status sent, since it may be another's turn to control; not for each that leaves, who may be many.
@@ -338,6 +350,11 @@ struct Server::Impl {
         if (connection.admitted) {
             if (auto const more = gone.next(now)) {
                 spdlog::info("viewer {} left: {}{}", connection.session->number(), reason, *more);
+            }
+        } else if (connection.session->hears_clock_only()) {
+            if (auto const more = gone.next(now)) {
+                spdlog::info("a server does not follow the clock any more, from {}: {}{}", connection.peer, reason,
+                             *more);
             }
         } else if (connection.stream->asks_for_files()) {
             return; // a browser may keep such a connection open as long as it is let
@@ -401,6 +418,9 @@ struct Server::Impl {
                 drop_overdue_connections();
                 admission.give_up_who_stay_away(steady_clock::now());
                 send_status();
+                if (drains && is_empty()) {
+                    shut_down();
+                }
                 beat();
             }
         });
@@ -462,7 +482,7 @@ struct Server::Impl {
                 wait_for_signal(hang_up);
                 return;
             }
-            if (signal == SIGTERM && options.drain.count() > 0 && !drains && !connections.open_sessions().empty()) {
+            if (signal == SIGTERM && options.drain.count() > 0 && !drains && !is_empty()) {
                 drain();
                 wait_for_signal(hang_up);
                 return;
@@ -554,6 +574,7 @@ void Server::run() {
         throw;
     }
     impl_->loop.stop();
+    impl_->clock.unfollow(); // who is here has been told by now
 }
 
 void Server::replace_scene(std::shared_ptr<LoadedScene> next) {

@@ -1,8 +1,10 @@
 #include "server/session/clock/clock_follower.h"
 
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
 #include <stop_token>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -14,12 +16,12 @@
 namespace framelet {
 namespace {
 
-/// Until it is tried again to connect to a server that is not there.
-constexpr std::chrono::seconds pause{1};
+/// Until it is tried again: at a server that is gone, and at one that refuses, which takes each time for a guess.
+constexpr std::chrono::seconds pause{1}, pause_after_refusal{30};
 
 ConnectionOptions options_for(ConnectionOptions options) {
-    options.clock_only = options.reconnect = true;
-    options.connect_seconds = 2; // the end of this server waits for it
+    options.clock_only = true;
+    options.connect_seconds = 4; // longer than a server lets those wait whose neighbours guess tokens
     return options;
 }
 
@@ -29,13 +31,46 @@ struct ClockFollower::Impl {
     ConnectionOptions const options;
     Take const take;
     std::mutex mutex;
-    std::condition_variable_any ends;
-    std::unique_ptr<ServerConnection> connection; ///< null: there is none yet
-    std::string last_complaint;
+    std::condition_variable_any news;
+    std::unique_ptr<ServerConnection> connection; ///< null: there is none
+    bool is_lost = false; ///< the connection has ended
+    std::string last_complaint; ///< of the thread alone
     std::jthread thread;
 
     Impl(ConnectionOptions const& leader, Take to_take) : options(options_for(leader)), take(std::move(to_take)) {
-        thread = std::jthread([this](std::stop_token const& stop) { connect(stop); });
+        thread = std::jthread([this](std::stop_token const& stop) { run(stop); });
+    }
+
+    void run(std::stop_token const& stop) {
+        while (!stop.stop_requested()) {
+            auto const until_next = hear(stop);
+            std::unique_lock lock(mutex);
+            news.wait_for(lock, stop, until_next, [] { return false; });
+        }
+    }
+
+    /// Connects, and hears the clock until the connection is lost. Returns how long to wait before the next time.
+    std::chrono::seconds hear(std::stop_token const& stop) {
+        try {
+            is_lost = false;
+            auto made = std::make_unique<ServerConnection>(options, handlers());
+            spdlog::info("the clock of {} is followed", options.server.text());
+            last_complaint.clear();
+            take(made->welcome().clock, made->welcome().controls);
+            std::unique_lock lock(mutex);
+            connection = std::move(made);
+            news.wait(lock, stop, [this] { return is_lost; });
+            auto const ended = std::exchange(connection, nullptr);
+            lock.unlock(); // its handlers may wait for that
+            take(std::nullopt, false);
+            return pause;
+        } catch (ConnectionRefusal const& refusal) {
+            complain(refusal.what());
+            return pause_after_refusal;
+        } catch (std::exception const& error) { // whatever it is, the scene can be served without that clock
+            complain(error.what());
+            return pause;
+        }
     }
 
     ServerConnection::Handlers handlers() {
@@ -45,36 +80,23 @@ struct ClockFollower::Impl {
                 take(status->clock, status->controls);
             }
         };
-        out.on_lost = [](std::string const& reason) {
-            spdlog::warn("the clock of --clock-from is not followed any more: {}", reason);
-        };
-        out.on_interrupted = [](std::string const& reason) {
+        out.on_lost = [this](std::string const& reason) {
             spdlog::warn("the clock of --clock-from is not heard, and goes on by itself: {}", reason);
-        };
-        out.on_reopened = [this](Welcome const& welcome) {
-            spdlog::info("the clock of {} is followed again", options.server.text());
-            take(welcome.clock, welcome.controls);
+            std::scoped_lock const lock(mutex);
+            is_lost = true;
+            news.notify_all();
         };
         out.on_sent = [] {};
         return out;
     }
 
-    void connect(std::stop_token const& stop) {
-        while (!stop.stop_requested()) {
-            try {
-                auto made = std::make_unique<ServerConnection>(options, handlers());
-                spdlog::info("the clock of {} is followed", options.server.text());
-                take(made->welcome().clock, made->welcome().controls);
-                std::scoped_lock const lock(mutex);
-                connection = std::move(made);
-                return;
-            } catch (std::exception const& error) { // whatever it is, the scene can be served without that clock
-                if (std::exchange(last_complaint, error.what()) != error.what()) {
-                    spdlog::warn("the clock of --clock-from is not followed yet: {}", error.what());
-                }
+    /// Says why there is no connection, once.
+    void complain(char const* reason) noexcept {
+        try {
+            if (std::exchange(last_complaint, reason) != reason) {
+                spdlog::warn("the clock of --clock-from is not followed yet: {}", reason);
             }
-            std::unique_lock lock(mutex);
-            ends.wait_for(lock, stop, pause, [] { return false; });
+        } catch (std::exception const&) { // memory is missing for the words
         }
     }
 };

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <memory>
+#include <optional>
 
 #include "common/clock_state.h"
 #include "protocol/connection/server_address.h"
@@ -13,18 +14,17 @@ namespace framelet {
 
 class ClockFollower {
 public:
-    /// How the other clock stands, and whether this server may set it. Called on a thread of this object.
-    using Take = std::function<void(ClockState const&, bool controls)>;
+    /// How the other clock stands, and whether it may be set from here; nothing: it is not heard any more. Called on a
+    /// thread of this object.
+    using Take = std::function<void(std::optional<ClockState> const&, bool takes_requests)>;
 
-    /// Connects, and comes back whenever the connection is lost. Before that and meanwhile nothing is heard.
+    /// Connects, and again whenever that fails or the connection is lost, whatever the reason.
     ClockFollower(ConnectionOptions const& leader, Take take);
+    /// Waits for an attempt to connect that is on its way, some seconds at most, but for the name's lookup.
     ~ClockFollower();
 
     /// Asks for the other clock to be set; does nothing while it is not heard. May be called from any thread.
     void request(ClockRequest const& request);
-
-    /// A clock that is off by less, in seconds, is left as it is: what is said takes as long on its way now and then.
-    static constexpr double exact_enough = 0.008;
 
 private:
     struct Impl;

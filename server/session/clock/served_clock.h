@@ -31,13 +31,16 @@ public:
 
     /// Follows this server's clock from now on.
     void follow(ConnectionOptions const& leader);
-    /// Ends following, and forgets what waits.
-    void stop();
+    /// Ends that; it may take some seconds.
+    void unfollow() { follower_.reset(); }
+    /// Forgets what waits.
+    void stop() { timer_.cancel(); }
 
 private:
     void apply_requests();
     void set(ClockRequest const& request, WallTime when);
-    void take(ClockState const& told, bool takes_requests, WallTime heard);
+    void take(std::optional<ClockState> const& told, bool takes_requests, WallTime heard);
+    bool differs(ClockState const& told, WallTime heard);
 
     boost::asio::io_context& io_;
     boost::asio::steady_timer timer_;
@@ -45,6 +48,7 @@ private:
     ClockRequests requests_;
     std::function<void()> const changed_, control_changed_;
     bool leader_takes_requests_ = false;
+    int late_in_a_row_ = 0; ///< how often the clock that is followed has seemed late
     std::unique_ptr<ClockFollower> follower_; ///< null: the clock is this server's own
 };
 
