@@ -43,7 +43,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     bool insecure = false;
     std::string light;
     std::vector<std::string> proxied;
-    std::string clock_from;
+    std::optional<std::string> clock_from;
     std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -115,7 +115,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
            "--clock-from", clock_from,
            "Follow the clock of another server of this scene, as of several behind one proxy, which has the "
            "same token; encrypted and with the same certificate where this one has --tls-cert, or as tls://HOST")
-        ->type_name("HOST[:PORT]");
+        ->type_name("HOST");
     app.add_flag("--paused", options.server.paused, "Start with the scene clock standing");
 
     app.option_defaults()->group("Connections");
@@ -249,10 +249,10 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             options.look.light_choice = LightChoice::told;
             options.look.light.method = parse_light_method(light);
         }
-        if (!clock_from.empty()) {
+        if (clock_from) {
             ConnectionOptions& leader = options.server.clock_from.emplace();
-            leader.server = parse_server_address(clock_from);
-            leader.tls = asks_for_tls(clock_from);
+            leader.server = parse_server_address(*clock_from);
+            leader.tls = asks_for_tls(*clock_from);
             leader.insecure = insecure;
         }
         for (std::string const& network : proxied) {
