@@ -25,6 +25,15 @@ void write_file(std::filesystem::path const& file, std::string const& bytes) {
     }
 }
 
+void write_scene(SceneEntry const& entry, std::filesystem::path const& folder) {
+    GltfDocument document = entry.make();
+    document.name = entry.name;
+    std::string const bytes = write_glb(document);
+    write_file(folder / (entry.name + ".glb"), bytes);
+    std::printf("%-17s %4.1f s %8zu triangles %9zu bytes\n", entry.name.c_str(), entry.duration,
+                drawn_triangles(document), bytes.size());
+}
+
 } // namespace
 
 int main(int argument_count, char** arguments) {
@@ -34,7 +43,10 @@ int main(int argument_count, char** arguments) {
     std::string only;
     bool committed = false;
     app.add_option("OUTDIR", folder, "Folder to write to; made where it is missing")->required();
-    app.add_option("--only", only, "Write this scene alone");
+    app.add_option(
+        "--only", only,
+        "Write this scene alone; terrain_large (20 million triangles) and forest (100 million, in instances) are "
+        "written only so");
     app.add_flag("--committed", committed, "Only the scenes whose files the repository carries");
     try {
         app.parse(argument_count, arguments);
@@ -45,16 +57,16 @@ int main(int argument_count, char** arguments) {
         std::filesystem::create_directories(folder);
         bool found = false;
         for (SceneEntry const& entry : scene_table()) {
-            if ((only.empty() ? committed && !entry.committed : entry.name != only)) {
-                continue;
+            if (only.empty() ? entry.committed || !committed : entry.name == only) {
+                write_scene(entry, folder);
+                found = true;
             }
-            found = true;
-            GltfDocument document = entry.make();
-            document.name = entry.name;
-            std::string const bytes = write_glb(document);
-            write_file(std::filesystem::path(folder) / (entry.name + ".glb"), bytes);
-            std::printf("%-17s %4.1f s %8zu triangles %9zu bytes\n", entry.name.c_str(), entry.duration,
-                        drawn_triangles(document), bytes.size());
+        }
+        for (SceneEntry const& entry : large_scene_table()) {
+            if (entry.name == only) {
+                write_scene(entry, folder);
+                found = true;
+            }
         }
         if (!found) {
             throw InputError("there is no scene '" + only + "': run without --only to see the names");

@@ -1,6 +1,7 @@
 #include "scenes/scene_table.h"
 
 #include "scenes/failure_scenes.h"
+#include "scenes/large_scenes.h"
 #include "scenes/lit_scenes.h"
 #include "scenes/vehicle_scenes.h"
 
@@ -86,6 +87,15 @@ std::span<SceneEntry const> scene_table() {
         {"glass", 4, true, [] { return make_glass_scene({.duration = 4}); }},
         {"interior", 8, true, [] { return make_interior_scene({.duration = 8}); }},
         {"dusk", 6, true, [] { return make_dusk_scene({.duration = 6}); }},
+    };
+    return table;
+}
+
+std::span<SceneEntry const> large_scene_table() {
+    static SceneEntry const table[] = {
+        {"terrain_large", 16, false, // 20 million triangles
+         [] { return make_terrain_scene({.duration = 16, .columns = 3163, .rows = 3163, .cell = 0.0629}); }},
+        {"forest", 20, false, [] { return make_forest_scene({.duration = 20}); }}, // 100 million, in instances
     };
     return table;
 }

@@ -132,7 +132,7 @@ std::uint32_t BatchWork::render_by_paths(PosedScene const& scene, ViewRays const
     return segments;
 }
 
-bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
+bool BatchWork::learn(PosedScene& scene, ViewerKnowledge& viewer) {
     if (order.plan.checks && order.plan.checks->visibility) {
         viewer.refresh.note_visibility(order.plan, visibility_);
     }
@@ -166,14 +166,14 @@ bool BatchWork::learn(PosedScene const& scene, ViewerKnowledge& viewer) {
 }
 
 /// Makes what a viewer that moves its samples is told of them. Of one that does not the server has to know it too.
-void BatchWork::describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer) {
+void BatchWork::describe_shapes(PosedScene& scene, ViewerKnowledge& viewer) {
     Viewport const viewport = order.state.view.viewport;
     if (order.takes_shapes) {
         viewer.shapes.fit(rendered_, needed_, make_view_rays(order.state.view.camera, viewport), ImagePlane(viewport),
                           order.plan.moment_begun, batch_.shapes);
     }
-    viewer.shapes.track(scene.scene(), scene.clips(), scene.render_scene().bodies(), order.scene_camera,
-                        order.present.scene_time, order.state.scene_time, batch_.tracks, batch_.camera_track);
+    viewer.shapes.track(scene.poses(), scene.render_scene().bodies(), order.scene_camera, order.present.scene_time,
+                        order.state.scene_time, batch_.tracks, batch_.camera_track);
     for (BodyTrack const& track : batch_.tracks) {
         viewer.motions.extend(track);
     }

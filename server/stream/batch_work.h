@@ -50,7 +50,7 @@ public:
     void render(PosedScene const& scene, PathSums& sums);
     /// Learns what was rendered; chooses QPs, makes shapes. Not to be called while the viewer's knowledge is used
     /// otherwise. False where there is nothing to send.
-    bool learn(PosedScene const& scene, ViewerKnowledge& viewer);
+    bool learn(PosedScene& scene, ViewerKnowledge& viewer);
     /// Encodes what was learnt. `codec` may keep scratch from batch to batch; the rest as of `BatchCodec::encode`.
     EncodedBatch encode(BatchCodec& codec, BatchMemory& memory, bool predicts) {
         return codec.encode(batch_, &memory, predicts);
@@ -62,7 +62,7 @@ private:
     std::uint32_t render_by_paths(PosedScene const& scene, ViewRays const& rays, ImagePlane const& plane,
                                   std::size_t index, PathSums& sums);
     std::size_t light_paths(LightGathering const& gathering, std::size_t framelets) const;
-    void describe_shapes(PosedScene const& scene, ViewerKnowledge& viewer);
+    void describe_shapes(PosedScene& scene, ViewerKnowledge& viewer);
     void fill_batch(ViewerKnowledge& viewer);
 
     PerThread<Framelet> fresh_;

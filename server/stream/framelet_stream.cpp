@@ -319,7 +319,7 @@ void FrameletStream::render(PosedScene const& scene) {
     planned_->render(scene, sums_);
 }
 
-bool FrameletStream::learn(PosedScene const& scene) {
+bool FrameletStream::learn(PosedScene& scene) {
     learnt_ = earlier_ != nullptr ? std::exchange(earlier_, nullptr) : std::exchange(planned_, nullptr);
     FRAMELET_CHECK(learnt_ != nullptr);
     if (learnt_->order.state.view.held_since != camera_->view.held_since) {

@@ -43,7 +43,7 @@ public:
     Step plan(Turn const& turn, PosedScene& scene) override;
     SceneTime moment() const override { return planned_->order.state.scene_time; }
     void render(PosedScene const& scene) override;
-    bool learn(PosedScene const& scene) override;
+    bool learn(PosedScene& scene) override;
     EncodedBatch encode() override;
 
     bool is_complete() const override { return complete_; }

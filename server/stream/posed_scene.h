@@ -52,6 +52,8 @@ public:
     void pose(SceneTime time);
     /// The pose of everything at `time`; valid until the next call. The renderer's scene stays as it is.
     ScenePose const& pose_of(SceneTime time);
+    /// Evaluates its poses: what `pose_of` gave is gone with the next one.
+    PoseEvaluator& poses() { return poses_; }
     /// The scene's camera `index` at `time`. The renderer's scene stays as it is.
     Camera camera(Index index, SceneTime time);
     /// True for a camera of the scene that goes with something that moves.

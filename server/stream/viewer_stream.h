@@ -59,7 +59,7 @@ public:
     /// Renders what was planned, in parallel on the calling TBB arena.
     virtual void render(PosedScene const& scene) = 0;
     /// Learns what was rendered and not learnt yet. False where nothing is to be encoded.
-    virtual bool learn(PosedScene const& scene) = 0;
+    virtual bool learn(PosedScene& scene) = 0;
     /// Encodes what was learnt last. Only where `learn` returned true.
     virtual EncodedBatch encode() = 0;
 

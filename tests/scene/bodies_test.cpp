@@ -129,7 +129,8 @@ TEST(Bodies, TracksHoldThePoseOfEveryKey) {
     Index const node = add_node(scene, none);
     animate(scene, node, AnimatedProperty::translation, {0, 0, 0, 6, 0, 0}); // 3 m/s, starts over after 2 s
     SceneBodies const bodies = find_bodies(scene, clips);
-    std::vector<BodyTrack> const tracks = body_tracks(scene, clips, bodies, 60, 90);
+    PoseEvaluator poses(scene, clips);
+    std::vector<BodyTrack> const tracks = body_tracks(poses, bodies, 60, 90);
     ASSERT_EQ(tracks.size(), 1u);
     EXPECT_EQ(tracks[0].body, 1);
     EXPECT_EQ(tracks[0].first_key, 60);
@@ -137,7 +138,7 @@ TEST(Bodies, TracksHoldThePoseOfEveryKey) {
     EXPECT_NEAR(tracks[0].keys[0].translation.x, 3, 1e-5f);
     EXPECT_NEAR(tracks[0].keys[30].translation.x, 4.5f, 1e-5f);
     EXPECT_NEAR(tracks[0].keys[80].translation.x, 1, 1e-5f);
-    EXPECT_EQ(body_tracks(scene, clips, bodies, 70, 1)[0].keys[0], tracks[0].keys[10]) << "whatever the span";
+    EXPECT_EQ(body_tracks(poses, bodies, 70, 1)[0].keys[0], tracks[0].keys[10]) << "whatever the span";
 }
 
 TEST(Bodies, WhatShrinksToNothingHasAFinitePose) {

@@ -16,6 +16,7 @@ struct Drive {
     Scene scene;
     std::array<Index, 1> clips{0};
     SceneBodies bodies;
+    std::optional<PoseEvaluator> poses;
     ShapeFeed feed;
     BodyMotions viewer;
 
@@ -28,6 +29,7 @@ struct Drive {
         scene.clips[0].channels.push_back(
             {0, AnimatedProperty::translation, Interpolation::linear, 3, {0, 60}, {0, 0, 0, 180, 0, 0}});
         bodies = find_bodies(scene, clips);
+        poses.emplace(scene, clips);
     }
 
     /// Number of keys that the batch of `time` took.
@@ -35,7 +37,7 @@ struct Drive {
     std::size_t batch(SceneTime present, SceneTime time) {
         std::vector<BodyTrack> tracks;
         std::optional<BodyTrack> camera;
-        feed.track(scene, clips, bodies, -1, present, time, tracks, camera);
+        feed.track(*poses, bodies, -1, present, time, tracks, camera);
         std::size_t keys = 0;
         for (BodyTrack const& track : tracks) {
             keys += track.keys.size();

@@ -39,6 +39,7 @@ public:
     ScenePose const& at(SceneTime time);
     /// The last of these; before the first, without clips.
     ScenePose const& pose() const { return pose_; }
+    Scene const& scene() const { return scene_; }
 
 private:
     void rest(std::size_t node);

@@ -160,14 +160,13 @@ BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber 
     return {world.translation, world.rotation, world.scale};
 }
 
-std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
-                                   std::int64_t first_key, std::size_t count) {
+std::vector<BodyTrack> body_tracks(PoseEvaluator& poses, SceneBodies const& bodies, std::int64_t first_key,
+                                   std::size_t count) {
     std::vector<BodyTrack> tracks;
     for (std::size_t body = 1; body < bodies.frames.size(); ++body) {
         tracks.push_back({static_cast<BodyNumber>(body), first_key, {}});
         tracks.back().keys.reserve(count);
     }
-    PoseEvaluator poses(scene, clips);
     for (std::size_t key = 0; key < count && !tracks.empty(); ++key) {
         double const number = static_cast<double>(first_key) + static_cast<double>(key);
         ScenePose const& pose = poses.at(number / body_keys_per_second);
@@ -178,13 +177,11 @@ std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> cl
     return tracks;
 }
 
-BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
-                             std::size_t count) {
+BodyTrack scene_camera_track(PoseEvaluator& poses, Index camera, std::int64_t first_key, std::size_t count) {
     BodyTrack track{camera_body(camera), first_key, {}};
-    PoseEvaluator poses(scene, clips);
     for (std::size_t key = 0; key < count; ++key) {
         double const number = static_cast<double>(first_key) + static_cast<double>(key);
-        Camera const at = scene_camera(scene, poses.at(number / body_keys_per_second), camera);
+        Camera const at = scene_camera(poses.scene(), poses.at(number / body_keys_per_second), camera);
         track.keys.push_back({at.position, at.orientation, Vec3(1)});
     }
     return track;

@@ -45,12 +45,11 @@ std::size_t joint_of(Primitive const& primitive, std::array<std::uint32_t, 3> co
 BodyPose body_pose(SceneBodies const& bodies, ScenePose const& pose, BodyNumber body);
 
 /// Tracks of all bodies but the static one, by body number: `count` keys from `first_key` on.
-std::vector<BodyTrack> body_tracks(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies,
-                                   std::int64_t first_key, std::size_t count);
+std::vector<BodyTrack> body_tracks(PoseEvaluator& poses, SceneBodies const& bodies, std::int64_t first_key,
+                                   std::size_t count);
 
 /// Track of a camera of the scene under the number `camera_body`: from where it looks at the world.
-BodyTrack scene_camera_track(Scene const& scene, std::span<Index const> clips, Index camera, std::int64_t first_key,
-                             std::size_t count);
+BodyTrack scene_camera_track(PoseEvaluator& poses, Index camera, std::int64_t first_key, std::size_t count);
 
 /// True for each camera of the scene that goes with something that moves.
 std::vector<bool> moving_cameras(Scene const& scene, std::span<Index const> clips);

@@ -62,9 +62,8 @@ void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t c
     });
 }
 
-void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
-                      SceneTime present, SceneTime time, std::vector<BodyTrack>& tracks,
-                      std::optional<BodyTrack>& camera_track) {
+void ShapeFeed::track(PoseEvaluator& poses, SceneBodies const& bodies, int camera, SceneTime present, SceneTime time,
+                      std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track) {
     tracks.clear();
     camera_track.reset();
     if (!bodies.any_moves() && camera < 0) {
@@ -83,9 +82,9 @@ void ShapeFeed::track(Scene const& scene, std::span<Index const> clips, SceneBod
     std::int64_t const end = key_behind(time);
     if (end - end_key_ >= (goes_on ? least_keys : 1)) {
         auto const count = static_cast<std::size_t>(end - end_key_);
-        tracks = body_tracks(scene, clips, bodies, end_key_, count);
+        tracks = body_tracks(poses, bodies, end_key_, count);
         if (camera >= 0) {
-            camera_track = scene_camera_track(scene, clips, camera, end_key_, count);
+            camera_track = scene_camera_track(poses, camera, end_key_, count);
         }
         end_key_ = end;
     }

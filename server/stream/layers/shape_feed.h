@@ -31,9 +31,8 @@ public:
     /// has leapt by seconds or backwards. `present`: the scene time that the viewer shows; it will show `time` later.
     /// `camera_track`: the same of the scene's camera `camera`, the one that the viewer looks through, where it is one
     /// that moves; -1: there is none.
-    void track(Scene const& scene, std::span<Index const> clips, SceneBodies const& bodies, int camera,
-               SceneTime present, SceneTime time, std::vector<BodyTrack>& tracks,
-               std::optional<BodyTrack>& camera_track);
+    void track(PoseEvaluator& poses, SceneBodies const& bodies, int camera, SceneTime present, SceneTime time,
+               std::vector<BodyTrack>& tracks, std::optional<BodyTrack>& camera_track);
 
 private:
     void follow(Vec3 eye, double now);

@@ -191,7 +191,7 @@ void measure_from(BenchScene& scene, Viewport viewport, SceneTime time, std::spa
     auto const first_key = static_cast<std::int64_t>(std::floor(time * body_keys_per_second));
     double const farthest = *std::ranges::max_element(times_ahead);
     auto const keys = static_cast<std::size_t>(std::ceil(farthest * body_keys_per_second)) + 2;
-    std::vector<BodyTrack> const tracks = body_tracks(scene.scene, scene.clips, bodies, first_key, keys);
+    std::vector<BodyTrack> const tracks = body_tracks(scene.posed->poses(), bodies, first_key, keys);
     constexpr double instant = 1.0 / 60;
     float const speed =
         glm::distance(camera_at(scene, time + instant).position, camera.position) / static_cast<float>(instant);

@@ -86,7 +86,7 @@ public:
         std::vector<std::uint8_t> const all(batch.framelets.size(), 1);
         shapes_.fit(grid.rendered(), all, make_view_rays(batch.view.camera, batch.view.viewport), grid.plane(),
                     input.now, batch.shapes);
-        shapes_.track(input.scene.scene, input.scene.clips, input.scene.render_scene->bodies(), -1, batch.scene_time,
+        shapes_.track(input.scene.posed->poses(), input.scene.render_scene->bodies(), -1, batch.scene_time,
                       batch.scene_time, batch.tracks, batch.camera_track);
         // The message is a batch whose payload is the access unit; of its tiles only the first is kept, which tells the
         // spacing.
