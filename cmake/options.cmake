@@ -32,7 +32,9 @@ function(framelet_reads_command_line)
 endfunction()
 
 find_program(CCACHE ccache)
-if(CCACHE)
+set(uses_ccache OFF)
+if(CCACHE AND NOT DEFINED ENV{CCACHE_DISABLE})
+  set(uses_ccache ON)
   # Precompiled headers are looked for in the cache only with these two told; no file uses __TIME__ or the like. What a file
   # includes is taken from the compiler: to preprocess it first costs a tenth of the build.
   set_property(GLOBAL PROPERTY RULE_LAUNCH_COMPILE "env CCACHE_DEPEND=1 CCACHE_SLOPPINESS=pch_defines,time_macros ${CCACHE}")

@@ -1,11 +1,11 @@
 # The standard library, glm and GoogleTest, which most files include, are parsed once for all files with the same flags. What
 # fewer include is not among them: every file pays for the size of what is precompiled. A file must still include all it uses:
-# the preset `debug` builds without this, and so does clang, whose precompiled headers do not go well with ccache.
-if(NOT FRAMELET_PRECOMPILE OR NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+# the preset `debug` and `./test tidy` do without this, and so does clang with ccache, which go badly together.
+if(NOT FRAMELET_PRECOMPILE OR (uses_ccache AND NOT CMAKE_CXX_COMPILER_ID STREQUAL "GNU"))
   return()
 endif()
 
-if(CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13) # it warns of std::string's own copies, wrongly (its bugs 105329 and 105651)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13) # it warns of std::string's own copies, wrongly (its bugs 105329 and 105651)
   target_compile_options(framelet_options INTERFACE
     -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 endif()

@@ -184,8 +184,12 @@ struct SceneCamera {
     float vertical_extent = 0.8f; ///< as in Camera
 };
 
+/// A compact one takes three fifths of the memory of a fast one; rays take a sixth longer.
+enum class BvhKind : std::uint8_t { fast, compact };
+
 struct Scene {
     std::string name;
+    BvhKind bvh = BvhKind::fast; ///< how it is to be built
     std::string light; ///< by which method the files want it to be lit, a word of --light; empty: by any
     std::vector<std::shared_ptr<Picture const>> images; ///< bytes as stored in the file
     std::vector<Texture> textures;

@@ -11,6 +11,7 @@
 #include "common/one_line.h"
 #include "server/scene/assimp/assimp_import.h"
 #include "server/scene/finish/scene_finish.h"
+#include "server/scene/finish/scene_memory.h"
 #include "server/scene/finish/scene_origin.h"
 #include "server/scene/gltf/gltf_import.h"
 #include "server/scene/mesh/mesh_import.h"
@@ -139,7 +140,9 @@ Scene import_scenes(std::span<std::filesystem::path const> files, Progress const
     Progress const report = progress ? progress : [](std::string_view, double) {};
     ImportBudget budget(options.memory_bytes);
     if (files.size() == 1) {
-        return import_file(files.front(), report, options, budget);
+        Scene scene = import_file(files.front(), report, options, budget);
+        scene.bvh = bvh_within(scene, options.memory_bytes);
+        return scene;
     }
     ImportOptions of_each = options;
     of_each.clips.clear(); // each may be in any of them
@@ -153,6 +156,7 @@ Scene import_scenes(std::span<std::filesystem::path const> files, Progress const
     Scene out = merged_scene(std::move(scenes), words_for(files));
     set_origin(out);
     out.warnings = condensed(out.warnings);
+    out.bvh = bvh_within(out, options.memory_bytes);
     return out;
 }
 

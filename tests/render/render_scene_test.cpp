@@ -2,6 +2,7 @@
 #include "server/render/prepared/render_scene.h"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -38,6 +39,35 @@ TEST(RenderScene, PoseMovesAnInstance) {
     EXPECT_NEAR(depth_at(ready, {10, 0, 5}), 4, 1e-5f);
     ready.set_pose(evaluate_pose(scene, {}, 0));
     EXPECT_NEAR(depth_at(ready, {0, 0, 5}), 5, 1e-5f);
+}
+
+TEST(RenderScene, ACompactBvhShowsTheSame) {
+    Scene scene = one_sheet();
+    for (int i = 0; i < 200; ++i) {
+        auto const x = 0.37f * static_cast<float>(i % 20), y = 0.31f * static_cast<float>(i / 20);
+        add(scene, quad({x - 3, y - 2, 0.01f * static_cast<float>(i)}, {0.3f, 0.1f, 0.2f}, {0, 0.4f, -0.1f}, 0), {});
+    }
+    RenderScene const fast(scene, black());
+    Scene compact_scene = scene;
+    compact_scene.bvh = BvhKind::compact;
+    for (Mesh& mesh : compact_scene.meshes) { // as after import: the BVH reads them where they are
+        for (Primitive& primitive : mesh.primitives) {
+            primitive.positions.reserve(primitive.positions.size() + 1);
+        }
+    }
+    RenderScene const compact(compact_scene, black());
+    int hits = 0;
+    for (int i = 0; i < 400; ++i) {
+        Vec3 const origin(0.33f * static_cast<float>(i % 20) - 3, 0.23f * static_cast<float>(i / 20) - 2, 5);
+        float const depth = depth_at(fast, origin);
+        if (std::isfinite(depth)) {
+            EXPECT_NEAR(depth_at(compact, origin), depth, 1e-5f);
+            ++hits;
+        } else {
+            EXPECT_TRUE(std::isinf(depth_at(compact, origin)));
+        }
+    }
+    EXPECT_GT(hits, 100);
 }
 
 TEST(RenderScene, OneOfManyMovesAndTheOthersStay) {

@@ -40,7 +40,7 @@ public:
     }
     SceneTime moment() const override { return 0; }
     void render(PosedScene const&) override {}
-    bool learn(PosedScene const&) override { return false; }
+    bool learn(PosedScene&) override { return false; }
     EncodedBatch encode() override { return {}; }
     bool is_complete() const override { return false; }
     std::uint64_t last_batch() const override { return 0; }

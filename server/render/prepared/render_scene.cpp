@@ -4,7 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <map>
-#include <set>
+#include <span>
 
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
@@ -13,6 +13,7 @@
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
 #include "server/render/prepared/prepared_scene.h"
+#include "server/scene/finish/scene_memory.h"
 
 namespace framelet {
 namespace {
@@ -71,22 +72,6 @@ std::vector<Geometry> geometries_of(Mesh const& mesh, MaterialLibrary const& lib
     return out;
 }
 
-bool is_deforming(Scene const& scene, Node const& node) {
-    return node.skin != none || morphs(scene.meshes[static_cast<std::size_t>(node.mesh)]);
-}
-
-/// Number of triangles that BVHs are built over: those of a mesh once, and once more for each node that deforms it.
-std::size_t triangles_to_build(Scene const& scene) {
-    std::set<Index> shared;
-    std::size_t count = 0;
-    for (Node const& node : scene.nodes) {
-        if (node.mesh != none && (is_deforming(scene, node) || shared.insert(node.mesh).second)) {
-            count += count_triangles(scene.meshes[static_cast<std::size_t>(node.mesh)]);
-        }
-    }
-    return count;
-}
-
 /// The surroundings of a scene with lights and no map: under a sun the sky that belongs to it, else just enough light
 /// to tell the shapes in the shade apart.
 Environment surroundings_of_lights(Scene const& scene) {
@@ -113,6 +98,7 @@ RenderScene::RenderScene(Scene const& scene, std::optional<Environment> environm
     prepared_->library = make_materials(scene, progress);
     prepared_->see_through =
         std::ranges::any_of(prepared_->library.materials, [](RenderMaterial const& m) { return m.see_through(); });
+    prepared_->bvh.build_as(scene.bvh);
     add_meshes(progress);
     report("preparing light", 0);
     if (environment) {
@@ -140,7 +126,7 @@ void RenderScene::set_display(DisplayTransform const& display) {
 
 void RenderScene::add_meshes(Progress const& progress) {
     std::map<Index, std::uint32_t> shared;
-    double const all = static_cast<double>(std::max<std::size_t>(triangles_to_build(scene_), 1));
+    double const all = static_cast<double>(std::max<std::uint64_t>(triangles_to_build(scene_), 1));
     double built = 0; // triangles
     auto const report = [&](double triangles) {
         if (progress) {
@@ -219,7 +205,9 @@ void RenderScene::deform_mesh(Placement const& placement) {
         Geometry& geometry = prepared_->meshes[placement.mesh][i];
         DeformedVertices& moved_to = vertices[i];
         deform(mesh.primitives[i], pose_.morph_weights[placement.node], placement.skin, pose_, moved_to);
-        std::ranges::copy(moved_to.positions, geometry.positions.begin());
+        if (std::span<Vec3> const positions = prepared_->bvh.positions(placement.mesh, i); !positions.empty()) {
+            std::ranges::copy(moved_to.positions, positions.begin());
+        }
         geometry.normals = moved_to.normals;
         geometry.tangents = moved_to.tangents;
     }

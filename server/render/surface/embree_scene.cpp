@@ -149,7 +149,8 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
     Handle& mesh = handles_->meshes.emplace_back(); // released with the others, whatever happens here
     mesh.geometries.reserve(geometries.size());
     mesh.scene = rtcNewScene(handles_->device);
-    rtcSetSceneFlags(mesh.scene, deforming ? query_filters | RTC_SCENE_FLAG_DYNAMIC : query_filters);
+    rtcSetSceneFlags(mesh.scene, query_filters | (deforming ? RTC_SCENE_FLAG_DYNAMIC : RTC_SCENE_FLAG_NONE) |
+                                     (kind_ == BvhKind::compact ? RTC_SCENE_FLAG_COMPACT : RTC_SCENE_FLAG_NONE));
     if (deforming) { // what is above the geometries is built anew for each pose: four times as fast so
         rtcSetSceneBuildQuality(mesh.scene, RTC_BUILD_QUALITY_LOW);
     }
@@ -161,12 +162,20 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
         if (source.positions.empty() || source.triangles.empty()) {
             continue; // a geometry that is not attached keeps the numbers of the others
         }
-        void* const vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                       sizeof(Vec3), source.positions.size());
-        handles_->throw_failure();
-        FRAMELET_CHECK(vertices != nullptr);
-        std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(Vec3));
-        geometry.positions = {static_cast<Vec3*>(vertices), source.positions.size()};
+        geometry.positions = source.positions;
+        // Embree reads 16 bytes at a vertex.
+        bool const can_share = source.positions.capacity() > source.positions.size();
+        if (can_share && !deforming) {
+            rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, source.positions.data(), 0,
+                                       sizeof(Vec3), source.positions.size());
+        } else {
+            void* const vertices = rtcSetNewGeometryBuffer(handle, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                           sizeof(Vec3), source.positions.size());
+            handles_->throw_failure();
+            FRAMELET_CHECK(vertices != nullptr);
+            std::memcpy(vertices, source.positions.data(), source.positions.size() * sizeof(Vec3));
+            geometry.positions = {static_cast<Vec3*>(vertices), source.positions.size()};
+        }
         rtcSetSharedGeometryBuffer(handle, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, source.triangles.data(), 0,
                                    sizeof(source.triangles[0]), source.triangles.size());
         if (deforming) {
@@ -190,6 +199,15 @@ std::uint32_t EmbreeScene::add_mesh(std::span<Geometry> geometries, bool deformi
     }
     handles_->throw_failure();
     return static_cast<std::uint32_t>(handles_->meshes.size() - 1);
+}
+
+std::span<Vec3> EmbreeScene::positions(std::uint32_t mesh, std::size_t geometry) {
+    RTCGeometry const handle = handles_->meshes[mesh].geometries[geometry];
+    auto const* const of = static_cast<Geometry const*>(rtcGetGeometryUserData(handle));
+    if (of == nullptr) {
+        return {};
+    }
+    return {static_cast<Vec3*>(rtcGetGeometryBufferData(handle, RTC_BUFFER_TYPE_VERTEX, 0)), of->positions.size()};
 }
 
 void EmbreeScene::refit_mesh(std::uint32_t mesh) {

@@ -17,9 +17,11 @@ public:
     EmbreeScene(EmbreeScene const&) = delete;
     EmbreeScene& operator=(EmbreeScene const&) = delete;
 
-    /// Builds a BVH over the geometries, which must stay where they are. Fills their `positions` from their source and
-    /// thereby moves them into the BVH's memory. `deforming`: built so that it can be refitted. `progress` is told what
-    /// fraction is built, 0..1, from any thread, one at a time; where it throws, so does this, without a BVH.
+    /// How what is added from now on is built.
+    void build_as(BvhKind kind) { kind_ = kind; }
+    /// Builds a BVH over the geometries, which must stay where they are, as must their sources. Sets their `positions`.
+    /// `deforming`: built so that it can be refitted. `progress` is told what fraction is built, 0..1, from any thread,
+    /// one at a time; where it throws, so does this, without a BVH.
     std::uint32_t add_mesh(std::span<Geometry> geometries, bool deforming,
                            std::function<void(double)> const& progress = {});
     // All that builds or moves throws std::bad_alloc where memory is missing, and from then on each time: Embree does
@@ -30,7 +32,9 @@ public:
     /// Removes all meshes and instances; those that are added next are numbered from 0.
     void clear();
 
-    /// Refits the mesh to `positions` that were written anew.
+    /// Positions of a geometry of a deforming mesh, to be written; empty where it has no triangles.
+    std::span<Vec3> positions(std::uint32_t mesh, std::size_t geometry);
+    /// Refits the mesh to positions that were written anew.
     void refit_mesh(std::uint32_t mesh);
     /// Instances are numbered from 0 in the order in which they are added. Until it is placed an instance is not there.
     std::uint32_t add_instance(std::uint32_t mesh);
@@ -58,6 +62,7 @@ public:
 private:
     struct Handles;
     std::unique_ptr<Handles> handles_;
+    BvhKind kind_ = BvhKind::fast;
 };
 
 } // namespace framelet

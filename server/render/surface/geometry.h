@@ -14,11 +14,12 @@ namespace framelet {
 /// The other scene times by which motion is known: one before, three after the present one.
 inline constexpr std::size_t motion_times = 4;
 
-/// One Primitive as the renderer reads it, in its instance's own space. Its positions live in the BVH's own buffer.
+/// One Primitive as the renderer reads it, in its instance's own space. Where it deforms its positions live in the
+/// BVH's own buffer.
 struct Geometry {
     Primitive const* source = nullptr; ///< triangles, uv and colours
     RenderMaterial const* material = nullptr;
-    std::span<Vec3> positions;
+    std::span<Vec3 const> positions;
     std::span<Vec3 const> normals;
     std::span<Vec4 const> tangents; ///< empty where there are none
     /// Where the vertices are in the world at the other times of the scene (`MotionTimes`); empty where it does not

@@ -155,7 +155,7 @@ Vec3 smooth_offset(HitFrame const& frame, int lane) {
     }
     Mat3 const& linear = frame.instance[i]->linear;
     Vec3 const facet = frame.facet.get(lane) * linear; // its covector in the mesh's own space
-    Vec3 const at = point.interpolate(std::span<Vec3 const>(geometry.positions));
+    Vec3 const at = point.interpolate(geometry.positions);
     float const least = 0.25f * glm::dot(facet, facet); // within 60 degrees
     float const weights[3] = {point.w, point.u, point.v};
     Vec3 offset(0);

@@ -19,7 +19,7 @@ BodyNumber body_at(Instance const& instance, HitPacket const& hits, int lane) {
 Vec3 position_at(Instance const& instance, HitPacket const& hits, int lane) {
     Geometry const& geometry = instance.geometries[hits.geometry[lane]];
     TrianglePoint const point = point_of(geometry, hits.triangle[lane], hits.u[lane], hits.v[lane]);
-    return instance.linear * point.interpolate(std::span<Vec3 const>(geometry.positions)) + instance.translation;
+    return instance.linear * point.interpolate(geometry.positions) + instance.translation;
 }
 
 /// The drift of what a lane has met besides what its body does.
@@ -72,9 +72,8 @@ Course course_of(Instance const& instance, HitPacket const& hits, int lane) {
     TrianglePoint const point = point_of(geometry, hits.triangle[lane], hits.u[lane], hits.v[lane]);
     Course course;
     for (std::size_t k = 0; k < motion_times; ++k) {
-        course[k] = geometry.elsewhen[k].empty()
-                        ? instance.elsewhen[k].of(point.interpolate(std::span<Vec3 const>(geometry.positions)))
-                        : point.interpolate(geometry.elsewhen[k]);
+        course[k] = geometry.elsewhen[k].empty() ? instance.elsewhen[k].of(point.interpolate(geometry.positions))
+                                                 : point.interpolate(geometry.elsewhen[k]);
     }
     return course;
 }

@@ -120,6 +120,7 @@ PrimitiveRepairs finish_primitive(Primitive& primitive, Material const& material
     }
     complete_uv(primitive, material);
     complete_tangents(primitive, material);
+    primitive.positions.reserve(primitive.positions.size() + 1); // a BVH may then read them where they are
     return repairs;
 }
 

@@ -9,6 +9,7 @@
 #include "common/counted.h"
 #include "common/one_line.h"
 #include "server/scene/backdrop.h"
+#include "server/scene/finish/scene_memory.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/bodies.h"
 #include "server/scene/summary/visibility.h"
@@ -56,6 +57,9 @@ Json summarize(Scene const& scene, std::span<Index const> clips) {
                 {"textures", scene.textures.size()},
                 {"images", scene.images.size()},
                 {"image_bytes", image_bytes(scene)},
+                {"memory_bytes", scene_bytes(scene) + bvh_bytes(scene)},
+                {"bvh_bytes", bvh_bytes(scene)},
+                {"bvh", scene.bvh == BvhKind::fast ? "fast" : "compact"},
                 {"bounds", box_json(scene, scene_bounds(scene, pose))},
                 {"bounds_without_backdrop", box_json(scene, without_backdrop(scene_parts(scene, pose)))},
                 {"origin", three(scene.origin)},
@@ -181,6 +185,9 @@ std::string scene_summary_text(Scene const& scene, std::span<Index const> clips)
     lines.add("materials", {count_of(s["materials"], "material") + ", " + count_of(s["textures"], "texture") + " of " +
                             count_of(s["images"], "image") + " (" + fixed(s["image_bytes"].get<double>() * 1e-6, 1) +
                             " MB decoded)"});
+    auto const megabytes = [&](char const* key) { return fixed(s[key].get<double>() * 1e-6, 1) + " MB"; };
+    lines.add("memory", {megabytes("memory_bytes") + ", of it the " + s["bvh"].get<std::string>() + " BVH " +
+                         megabytes("bvh_bytes")});
     lines.add(
         "lights", scene.lights.empty() ? "none: a sun and a sky are put in" : counted(s["lights"].size(), "light"),
         each(s["lights"], [](Json const& light) { return name_of(light) + ", " + light["kind"].get<std::string>(); }));

@@ -76,7 +76,7 @@ void MethodStream::gather_light(std::size_t samples, double samples_took) {
     }
 }
 
-bool MethodStream::learn(PosedScene const&) {
+bool MethodStream::learn(PosedScene&) {
     {
         std::scoped_lock const lock(mutex_);
         learnt_ = std::move(rendered_.front());

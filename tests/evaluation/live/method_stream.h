@@ -23,7 +23,7 @@ public:
     /// 0: the method poses the scene for itself.
     SceneTime moment() const override { return 0; }
     void render(PosedScene const& scene) override;
-    bool learn(PosedScene const& scene) override;
+    bool learn(PosedScene& scene) override;
     EncodedBatch encode() override;
 
     bool is_complete() const override { return idle_; }
