@@ -22,6 +22,9 @@ struct BodyPose {
 /// Keys a second of scene time. Key k stands for the time k / body_keys_per_second.
 inline constexpr int body_keys_per_second = 60;
 
+/// Largest number of tracks that are given out together: so many bodies may move, each with a track of its own.
+inline constexpr std::size_t max_batch_tracks = 4096;
+
 /// Largest number of keys that all tracks which are given out together may have, so that what they take is bounded.
 inline constexpr std::size_t max_batch_keys = 131072;
 

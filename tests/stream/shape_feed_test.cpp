@@ -7,11 +7,12 @@
 
 #include "common/clock_state.h"
 #include "common/framelet/body_motion.h"
+#include "protocol/codec/geometry/track_codec.h"
 
 namespace framelet {
 namespace {
 
-/// A scene with one body that goes 3 metres a second along x, for a minute.
+/// A scene of bodies that go 3 metres a second along x, for a minute.
 struct Drive {
     Scene scene;
     std::array<Index, 1> clips{0};
@@ -20,14 +21,16 @@ struct Drive {
     ShapeFeed feed;
     BodyMotions viewer;
 
-    Drive() {
+    explicit Drive(Index count = 1) {
         scene.meshes.resize(1);
-        scene.nodes.resize(1);
-        scene.nodes[0].mesh = 0;
+        scene.nodes.resize(static_cast<std::size_t>(count));
         scene.clips.resize(1);
         scene.clips[0].duration = 60;
-        scene.clips[0].channels.push_back(
-            {0, AnimatedProperty::translation, Interpolation::linear, 3, {0, 60}, {0, 0, 0, 180, 0, 0}});
+        for (Index i = 0; i < count; ++i) {
+            scene.nodes[static_cast<std::size_t>(i)].mesh = 0;
+            scene.clips[0].channels.push_back(
+                {i, AnimatedProperty::translation, Interpolation::linear, 3, {0, 60}, {0, 0, 0, 180, 0, 0}});
+        }
         bodies = find_bodies(scene, clips);
         poses.emplace(scene, clips);
     }
@@ -55,6 +58,19 @@ TEST(ShapeFeed, AllIsKnownWhateverThePausesBetweenBatches) {
         time += pause;
         drive.batch(time);
         EXPECT_NEAR(drive.moved(1.1, time + 0.3), 3 * (time + 0.3 - 1.1), 1e-4) << pause;
+    }
+}
+
+TEST(ShapeFeed, TracksFitIntoABatchHoweverManyBodiesThereAre) {
+    for (Index const count : {300, 4000, 4096, 4097, 20'000}) {
+        Drive drive(count);
+        std::vector<BodyTrack> tracks;
+        std::optional<BodyTrack> camera;
+        for (double const time : {1.0, 1.02, 1.2, 2.9, 7.0, 0.5}) {
+            drive.feed.track(*drive.poses, drive.bodies, -1, time, time, tracks, camera);
+            EXPECT_LE(tracks.size(), max_batch_tracks);
+            EXPECT_FALSE(encode_tracks(tracks, camera).empty()); // which checks all limits
+        }
     }
 }
 

@@ -11,8 +11,8 @@
 
 namespace framelet {
 
-/// The largest number of bodies of which one batch tells how they move, and of keys of one of them.
-inline constexpr std::size_t max_batch_tracks = 4096, max_track_keys = 1024;
+/// The largest number of keys of one track.
+inline constexpr std::size_t max_track_keys = 1024;
 
 /// The largest number of bytes of the tracks of one batch: each key with ten numbers of five bytes.
 inline constexpr std::size_t most_track_bytes = 64 * (max_batch_tracks + 2) + 50 * (max_batch_keys + max_track_keys);

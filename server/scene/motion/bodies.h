@@ -31,8 +31,8 @@ struct SceneBodies {
     bool any_flows() const;
 };
 
-/// The largest body number.
-inline constexpr std::size_t most_bodies = 65535;
+/// The largest body number: a batch has room for the tracks of so many.
+inline constexpr std::size_t most_bodies = max_batch_tracks;
 
 /// Numbers the bodies in the order of their nodes; only those that draw something get a number, and no more than
 /// `most_bodies` of them.
