@@ -25,6 +25,11 @@ void* allocate(std::size_t bytes, std::size_t alignment) {
     return memory;
 }
 
+/// Apart, since GCC takes `free` for the wrong end of what `new` gave wherever it sees both.
+[[gnu::noinline]] void release(void* memory) {
+    std::free(memory);
+}
+
 } // namespace
 
 void* operator new(std::size_t bytes) {
@@ -34,16 +39,16 @@ void* operator new(std::size_t bytes, std::align_val_t alignment) {
     return allocate(bytes, static_cast<std::size_t>(alignment));
 }
 void operator delete(void* memory) noexcept {
-    std::free(memory);
+    release(memory);
 }
 void operator delete(void* memory, std::size_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 void operator delete(void* memory, std::align_val_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 void operator delete(void* memory, std::size_t, std::align_val_t) noexcept {
-    std::free(memory);
+    release(memory);
 }
 
 namespace framelet {

@@ -6,9 +6,6 @@
 
 #include <glm/geometric.hpp>
 
-#include "server/render/light/luminance.h"
-#include "server/render/trace/lamp_shadows.h"
-
 namespace framelet {
 namespace {
 
@@ -63,61 +60,6 @@ void aim_reflections(SurfacePacket const& s, MirrorRays& mirror) {
     });
 }
 
-/// The light of which each lane would get most if nothing were in its way.
-struct StrongestLight {
-    LaneFloats most; ///< luminance
-    LaneIndices lost; ///< its number where it is blocked, else `no_light`
-
-    void reset() {
-        most.fill(0);
-        for (std::uint32_t& number : lost.lane) {
-            number = no_light;
-        }
-    }
-    void add(std::uint32_t number, RenderLight const& light, ArrivingLight const& arriving, LaneMask reached,
-             LaneMask blocked) {
-        float const strength = luminance(light.intensity);
-        for_each_lane(reached, [&](int i) {
-            float const arrives = strength * arriving.irradiance[i];
-            if (arrives > most[i]) {
-                most[i] = arrives;
-                lost[i] = (blocked >> i & 1) != 0 ? number : no_light;
-            }
-        });
-    }
-};
-
-/// Adds what the surface reflects of punctual lights. Returns how many rays that took.
-std::uint32_t add_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
-                         bool is_plane, StrongestLight& strongest, LaneVec3& radiance) {
-    std::uint32_t segments = 0;
-    ArrivingLight arriving;
-    LaneVec3 irradiance, passed;
-    for (std::uint32_t number = 0; number < scene.lights.size(); ++number) {
-        RenderLight const& light = scene.lights[number];
-        LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
-        if (reached == 0) {
-            continue;
-        }
-        LaneMask const blocked = find_shadow(scene, light, s, arriving, reached, is_plane, passed, segments);
-        if (scene.moves) {
-            strongest.add(number, light, arriving, reached, blocked);
-        }
-        LaneMask const bright = reached & ~blocked;
-        if (bright == 0) {
-            continue;
-        }
-        for (int i = 0; i < lanes; ++i) {
-            float const arrives = (bright >> i & 1) != 0 ? arriving.irradiance[i] : 0.0f;
-            irradiance.x[i] = passed.x[i] * (light.intensity.r * arrives);
-            irradiance.y[i] = passed.y[i] * (light.intensity.g * arrives);
-            irradiance.z[i] = passed.z[i] * (light.intensity.b * arrives);
-        }
-        add_reflected(lobes, s.normal, s.view, arriving.to_light, irradiance, radiance);
-    }
-    return segments;
-}
-
 /// Transmission replaces diffuse reflection by what is seen straight through, tinted by the base colour.
 void split_transmission(SurfacePacket const& s, LaneMask active, LobePacket& lobes, ShadedPacket& out) {
     for_each_lane(active, [&](int i) {
@@ -153,13 +95,7 @@ void shade_surroundings(PreparedScene const& scene, SurfacePacket const& s, Surr
 void shade_lights(PreparedScene const& scene, SurfacePacket const& s, LaneMask active, LobePacket const& lobes,
                   bool is_plane, ShadedPacket& out) {
     StrongestLight strongest;
-    if (scene.moves) {
-        strongest.reset();
-    }
-    LaneMask const lit = active & ~s.unlit;
-    if (lit != 0) {
-        out.segments += add_lights(scene, s, lobes, lit, is_plane, strongest, out.radiance);
-    }
+    out.segments += add_lights(scene, s, lobes, active & ~s.unlit, is_plane, strongest, out.radiance);
     if (scene.moves) {
         out.lost_light = strongest.lost;
     }

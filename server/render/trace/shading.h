@@ -6,11 +6,10 @@
 #include "server/render/packet.h"
 #include "server/render/prepared/prepared_scene.h"
 #include "server/render/surface/surface.h"
+#include "server/render/trace/lamp_light.h"
 #include "server/render/trace/surrounding_light.h"
 
 namespace framelet {
-
-inline constexpr std::uint32_t no_light = ~0u;
 
 struct ShadedPacket {
     LaneVec3 radiance; ///< of the surface, already weighed by its alpha
