@@ -80,7 +80,6 @@ void rank_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket 
     ranked.weight.assign(count, 0);
     all.fill(Vec3(0));
     ArrivingLight arriving;
-    float before = 0;
     for (std::size_t number = 0; number < count; ++number) {
         RenderLight const& light = scene.lights[number];
         LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
@@ -107,8 +106,9 @@ void rank_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket 
     // In the order of the file, so that from packet to packet the same ones are looked at.
     std::sort(ranked.order.begin() + exact_lights, ranked.order.end());
     ranked.sums.clear();
+    float sum = 0;
     for (std::size_t i = exact_lights; i < count; ++i) {
-        ranked.sums.push_back(before += ranked.weight[ranked.order[i]]);
+        ranked.sums.push_back(sum += ranked.weight[ranked.order[i]]);
     }
 }
 
