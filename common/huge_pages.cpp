@@ -1,8 +1,9 @@
 // A program that links this has large blocks in huge pages where the system gives them to those who ask: a page that is
 // touched first costs microseconds, and pictures and geometry come in blocks of megabytes that are touched once. glibc
 // does the same, but only if its environment says so when the program starts (glibc.malloc.hugetlb=1).
-#include <cstdint>
+#include <cstddef>
 #include <cstdlib>
+#include <memory>
 #include <new>
 
 #include <sys/mman.h>
@@ -11,10 +12,10 @@ namespace {
 
 void ask_for_huge_pages([[maybe_unused]] void* memory, [[maybe_unused]] std::size_t bytes) {
 #ifdef MADV_HUGEPAGE
-    constexpr std::uintptr_t page = 4096; // malloc's own words stand before the block
-    std::uintptr_t const begin = (reinterpret_cast<std::uintptr_t>(memory) + page - 1) / page * page;
-    std::uintptr_t const end = (reinterpret_cast<std::uintptr_t>(memory) + bytes) / page * page;
-    ::madvise(reinterpret_cast<void*>(begin), end - begin, MADV_HUGEPAGE); // refused: the pages are small ones
+    constexpr std::size_t page = 4096; // malloc's own words stand before the block
+    if (std::align(page, page, memory, bytes) != nullptr) {
+        ::madvise(memory, bytes / page * page, MADV_HUGEPAGE); // refused: the pages are small ones
+    }
 #endif
 }
 
