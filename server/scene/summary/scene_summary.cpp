@@ -57,7 +57,7 @@ Json summarize(Scene const& scene, std::span<Index const> clips) {
                 {"textures", scene.textures.size()},
                 {"images", scene.images.size()},
                 {"image_bytes", image_bytes(scene)},
-                {"memory_bytes", scene_bytes(scene) + bvh_bytes(scene)},
+                {"memory_bytes", scene_bytes(scene) + bvh_bytes(scene) + scene.nodes.size() * bytes_a_node},
                 {"bvh_bytes", bvh_bytes(scene)},
                 {"bvh", scene.bvh == BvhKind::fast ? "fast" : "compact"},
                 {"bounds", box_json(scene, scene_bounds(scene, pose))},
