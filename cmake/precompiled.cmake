@@ -5,7 +5,8 @@ if(NOT FRAMELET_PRECOMPILE OR (uses_ccache AND NOT CMAKE_CXX_COMPILER_ID STREQUA
   return()
 endif()
 
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13) # it warns of std::string's own copies, wrongly (its bugs 105329 and 105651)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU" AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13)
+  # It warns of std::string's own copies, wrongly (its bugs 105329 and 105651).
   target_compile_options(framelet_options INTERFACE
     -Wno-array-bounds -Wno-restrict -Wno-stringop-overflow -Wno-stringop-overread)
 endif()

@@ -3,7 +3,6 @@
 
 #include "scenes/failure_scenes.h"
 #include "scenes/gltf/animations.h"
-#include "scenes/mesh/textures.h"
 #include "scenes/things/landscape.h"
 #include "scenes/things/trees.h"
 
@@ -13,12 +12,7 @@ GltfDocument make_foliage_scene(FoliageParameters const& parameters) {
     add_sun(document, {-0.35, 0.80, 0.45});
     add_surroundings(document);
     add_meadow(document, 160);
-    int const leaves = document.add_material({.name = "twigs",
-                                              .roughness = 0.8,
-                                              .base_color_texture = document.add_image(leaf_texture()),
-                                              .alpha_cutoff = 0.5,
-                                              .double_sided = true});
-    int const bark = document.add_material({.name = "bark", .base_color = D3(0.20, 0.15, 0.10)});
+    auto const [leaves, bark] = add_plant_materials(document);
     int const trunk = document.add_mesh("trunk", {{make_trunk(), bark}});
     std::array<int, 3> crowns{};
     for (std::uint32_t kind = 0; kind < crowns.size(); ++kind) {

@@ -3,7 +3,6 @@
 
 #include "scenes/gltf/animations.h"
 #include "scenes/large_scenes.h"
-#include "scenes/mesh/textures.h"
 #include "scenes/things/landscape.h"
 #include "scenes/things/trees.h"
 
@@ -17,12 +16,7 @@ GltfDocument make_forest_scene(ForestParameters const& parameters) {
     int const side = static_cast<int>(std::ceil(std::sqrt(parameters.trees)));
     double const width = side * parameters.spacing;
     add_meadow(document, 1.1 * width);
-    int const leaves = document.add_material({.name = "twigs",
-                                              .roughness = 0.8,
-                                              .base_color_texture = document.add_image(leaf_texture()),
-                                              .alpha_cutoff = 0.5,
-                                              .double_sided = true});
-    int const bark = document.add_material({.name = "bark", .base_color = D3(0.20, 0.15, 0.10)});
+    auto const [leaves, bark] = add_plant_materials(document);
     std::array<int, 8> trees{};
     for (std::uint32_t kind = 0; kind < trees.size(); ++kind) {
         trees[kind] =

@@ -17,7 +17,7 @@ struct SceneEntry {
 };
 
 std::span<SceneEntry const> scene_table();
-/// Those that are made only where they are asked for by name: hundreds of megabytes.
+/// Those that are made only where they are asked for by name: large ones.
 std::span<SceneEntry const> large_scene_table();
 
 } // namespace framelet

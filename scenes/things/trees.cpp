@@ -4,8 +4,18 @@
 #include <cmath>
 
 #include "scenes/mesh/mesh_builder.h"
+#include "scenes/mesh/textures.h"
 
 namespace framelet {
+
+PlantMaterials add_plant_materials(GltfDocument& document) {
+    int const leaves = document.add_material({.name = "twigs",
+                                              .roughness = 0.8,
+                                              .base_color_texture = document.add_image(leaf_texture()),
+                                              .alpha_cutoff = 0.5,
+                                              .double_sided = true});
+    return {leaves, document.add_material({.name = "bark", .base_color = D3(0.20, 0.15, 0.10)})};
+}
 
 MeshData make_crown(std::uint32_t seed, int twigs) {
     MeshData crown;

@@ -18,10 +18,6 @@
 namespace framelet {
 namespace {
 
-bool morphs(Mesh const& mesh) {
-    return std::ranges::any_of(mesh.primitives, [](Primitive const& p) { return !p.morph_targets.empty(); });
-}
-
 /// False for transforms that flatten or shrink to nothing: rays cannot be taken into their space.
 bool invertible(Mat3 const& m) {
     float const lengths = glm::length(m[0]) * glm::length(m[1]) * glm::length(m[2]);

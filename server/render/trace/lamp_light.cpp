@@ -73,22 +73,25 @@ struct RankedLights {
     std::vector<float> sums; ///< of the weights of the others, as far as each
 };
 
+/// What would be reflected of a light if nothing were in the way.
+LaneVec3 unshadowed(RenderLight const& light, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit) {
+    ArrivingLight arriving;
+    LaneVec3 radiance;
+    radiance.fill(Vec3(0));
+    if (LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving); reached != 0) {
+        add_light(light, arriving, s, lobes, reached, nullptr, radiance);
+    }
+    return radiance;
+}
+
 /// Ranks all lights; sets `all` to what would be reflected if nothing were in the way.
 void rank_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
                  RankedLights& ranked, LaneVec3& all) {
     std::size_t const count = scene.lights.size();
     ranked.weight.assign(count, 0);
     all.fill(Vec3(0));
-    ArrivingLight arriving;
     for (std::size_t number = 0; number < count; ++number) {
-        RenderLight const& light = scene.lights[number];
-        LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
-        if (reached == 0) {
-            continue;
-        }
-        LaneVec3 own;
-        own.fill(Vec3(0));
-        add_light(light, arriving, s, lobes, reached, nullptr, own);
+        LaneVec3 const own = unshadowed(scene.lights[number], s, lobes, lit);
         float sum = 0;
         for (int i = 0; i < lanes; ++i) {
             all.x[i] += own.x[i];
@@ -115,11 +118,7 @@ void rank_lights(PreparedScene const& scene, SurfacePacket const& s, LobePacket 
 /// Takes from `rest` what a light would add without its shadow.
 void take_away(RenderLight const& light, SurfacePacket const& s, LobePacket const& lobes, LaneMask lit,
                LaneVec3& rest) {
-    ArrivingLight arriving;
-    LaneMask const reached = arriving_light(light, s.position, s.normal, lit, arriving);
-    LaneVec3 own;
-    own.fill(Vec3(0));
-    add_light(light, arriving, s, lobes, reached, nullptr, own);
+    LaneVec3 const own = unshadowed(light, s, lobes, lit);
     for (int i = 0; i < lanes; ++i) {
         rest.x[i] = std::max(rest.x[i] - own.x[i], 0.0f);
         rest.y[i] = std::max(rest.y[i] - own.y[i], 0.0f);

@@ -6,6 +6,7 @@
 
 #include "common/error.h"
 #include "common/one_line.h"
+#include "server/scene/finish/primitive_ops.h"
 
 namespace framelet {
 namespace {
@@ -19,38 +20,33 @@ constexpr BvhBytes bytes_a_triangle(BvhKind kind) {
     return kind == BvhKind::fast ? BvhBytes{68, 100} : BvhBytes{37, 42};
 }
 
-template <class T>
-std::uint64_t bytes_of(std::vector<T> const& values) {
-    return values.size() * sizeof(T);
-}
-
-std::uint64_t primitive_bytes(Primitive const& p) {
-    std::uint64_t bytes = bytes_of(p.positions) + bytes_of(p.normals) + bytes_of(p.tangents) + bytes_of(p.uv[0]) +
-                          bytes_of(p.uv[1]) + bytes_of(p.colors) + bytes_of(p.influences) + bytes_of(p.triangles);
-    for (MorphTarget const& target : p.morph_targets) {
-        bytes += bytes_of(target.positions) + bytes_of(target.normals) + bytes_of(target.tangents);
-    }
-    return bytes;
-}
-
 } // namespace
 
 std::uint64_t scene_bytes(Scene const& scene) {
-    std::uint64_t bytes = 0;
+    std::uint64_t bytes = image_bytes(scene);
     for (Mesh const& mesh : scene.meshes) {
         for (Primitive const& primitive : mesh.primitives) {
-            bytes += primitive_bytes(primitive);
+            bytes += primitive.positions.size() * bytes_per_vertex(primitive) +
+                     primitive.triangles.size() * sizeof(primitive.triangles[0]);
         }
-    }
-    for (auto const& image : scene.images) {
-        bytes += image ? bytes_of(image->rgba) : 0;
     }
     return bytes;
 }
 
+std::uint64_t image_bytes(Scene const& scene) {
+    std::uint64_t bytes = 0;
+    for (auto const& image : scene.images) {
+        bytes += image ? image->rgba.size() * sizeof(image->rgba[0]) : 0;
+    }
+    return bytes;
+}
+
+bool morphs(Mesh const& mesh) {
+    return std::ranges::any_of(mesh.primitives, [](Primitive const& p) { return !p.morph_targets.empty(); });
+}
+
 bool is_deforming(Scene const& scene, Node const& node) {
-    return node.skin != none || std::ranges::any_of(scene.meshes[static_cast<std::size_t>(node.mesh)].primitives,
-                                                    [](Primitive const& p) { return !p.morph_targets.empty(); });
+    return node.skin != none || morphs(scene.meshes[static_cast<std::size_t>(node.mesh)]);
 }
 
 std::uint64_t triangles_to_build(Scene const& scene) {

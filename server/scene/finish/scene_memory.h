@@ -10,11 +10,17 @@ namespace framelet {
 /// Bytes of triangles, their attributes and pictures.
 std::uint64_t scene_bytes(Scene const& scene);
 
+/// Bytes of the pictures alone.
+std::uint64_t image_bytes(Scene const& scene);
+
 /// Bytes of what is kept for each node: its place, its instance in the BVH, the poses about it.
 inline constexpr std::uint64_t bytes_a_node = 2700; // measured
 
 /// Number of triangles that BVHs are built over: those of a mesh once, and once more for each node that deforms it.
 std::uint64_t triangles_to_build(Scene const& scene);
+
+/// Whether the mesh has morph targets.
+bool morphs(Mesh const& mesh);
 
 /// Whether the node has vertices of its own, which its clips or its skin move.
 bool is_deforming(Scene const& scene, Node const& node);

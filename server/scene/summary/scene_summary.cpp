@@ -23,14 +23,6 @@ char const* kind_of(LightType type) {
     return type == LightType::directional ? "directional" : type == LightType::point ? "point" : "spot";
 }
 
-std::size_t image_bytes(Scene const& scene) {
-    std::size_t bytes = 0;
-    for (auto const& image : scene.images) {
-        bytes += image ? image->rgba.size() * sizeof(image->rgba[0]) : 0;
-    }
-    return bytes;
-}
-
 Json three(glm::dvec3 const& v) {
     return {v.x, v.y, v.z};
 }
