@@ -2,7 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
+
+#include "protocol/messages/message.h"
 
 namespace framelet {
 
@@ -34,6 +37,7 @@ struct ConnectionOptions {
     bool insecure = false; ///< without TLS the token is sent to other machines too, which whoever is between can read
     std::string authority_file; ///< certificates to trust for TLS; empty: the system's certificate authorities
     bool clock_only = false; ///< no pictures are wanted, only the scene's clock
+    std::optional<WorkOffer> work{}; ///< no pictures are wanted, but orders of paths
     bool reconnect = false; ///< a session that ends before its time is followed by another as soon as there is a server
     double connect_seconds = 10; ///< most time until name, connection and handshake are done
     double silence_seconds = 5; ///< time without a message after which the server is given up

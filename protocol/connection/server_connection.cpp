@@ -244,7 +244,8 @@ struct ServerConnection::Impl {
         });
         // The greeting is small; batches may be large, once we know who talks to us.
         attempted->start(std::move(events), max_upstream_message_bytes);
-        Hello hello{protocol_version, token, options.clock_only ? coding::none : coding::all};
+        Hello hello{protocol_version, token, options.clock_only || options.work ? coding::none : coding::all};
+        hello.work = options.work;
         if (was_open && handlers.on_asking) {
             handlers.on_asking(hello);
         }

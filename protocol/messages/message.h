@@ -12,6 +12,7 @@
 
 #include "common/camera.h"
 #include "common/clock_state.h"
+#include "common/color.h"
 #include "common/framelet/framelet.h"
 
 namespace framelet {
@@ -42,6 +43,15 @@ inline constexpr std::uint32_t shapes_and_tracks = 64;
 inline constexpr std::uint32_t all = exact_colour | haar_colour | shapes_and_tracks | predicted_colour; ///< known here
 } // namespace coding
 
+/// Who offers itself as a worker wants no pictures, but orders of paths. Scene and light as its own: what it answers is
+/// of use where they are the server's.
+struct WorkOffer {
+    std::uint64_t scene = 0; ///< as `Welcome::scene_identity`
+    std::uint64_t light = 0; ///< what paths bring there, with its program and on its processor; never 0
+    std::uint16_t threads = 1;
+    bool operator==(WorkOffer const&) const = default;
+};
+
 /// The first message of a connection.
 struct Hello {
     std::uint16_t version = protocol_version;
@@ -49,6 +59,7 @@ struct Hello {
     std::uint32_t codings = coding::exact_colour;
     Ticket ticket{}; ///< that of the session before, to go on with it
     std::uint64_t last_batch = 0; ///< the newest of that session that the viewer has, with all before it; 0: none
+    std::optional<WorkOffer> work{};
     bool operator==(Hello const&) const = default;
 };
 
@@ -95,7 +106,47 @@ struct Evicted {
 /// The largest number of framelets of one message; more are several messages.
 inline constexpr std::size_t max_evicted = 4096;
 
+/// A worker's answer to an order.
+struct PathAnswer {
+    std::uint64_t number = 0; ///< of the order
+    std::uint32_t took_us = 0; ///< microseconds of a processor
+    std::vector<float> light; ///< of each tile, then of each place (PROTOCOL.md, *Workers*); empty: it was left out
+    bool operator==(PathAnswer const&) const = default;
+};
+
 // --- downstream, and either direction
+
+/// One path through each sample of a tile.
+struct TilePath {
+    Tile tile;
+    std::uint32_t number = 0; ///< of the path, among those of a sample
+    bool operator==(TilePath const&) const = default;
+};
+inline constexpr std::size_t max_order_tiles = 16; ///< so many that an answer is one message
+
+/// Sixteen paths from a place of the light cache.
+struct PlacePaths {
+    std::uint32_t frame = 0; ///< 0: the world; else the number of a moving instance + 1
+    Vec3 position{0}; ///< in the frame, metres
+    Vec3 normal{0, 1, 0}; ///< in the frame, unit
+    std::uint32_t seed = 0; ///< of their random numbers
+    std::uint32_t first = 0; ///< number of the first, among those of the place
+    float bright = 0; ///< luminance from which on what a path brings is kept apart
+    bool operator==(PlacePaths const&) const = default;
+};
+inline constexpr std::size_t max_order_places = 512; ///< likewise
+
+/// Paths of light that a worker is to trace: of tiles or of places, not of both. Numbers count up.
+struct PathOrder {
+    std::uint64_t number = 0;
+    std::uint64_t round = 0; ///< number of the first order of its round: older ones are of no use any more
+    SceneTime scene_time = 0;
+    NumberedView view; ///< of the tiles
+    DisplayTransform display; ///< as which unlit surfaces keep their colours
+    std::vector<TilePath> tiles;
+    std::vector<PlacePaths> places;
+    bool operator==(PathOrder const&) const = default;
+};
 
 struct SceneCameraInfo {
     std::string name;
@@ -172,7 +223,7 @@ struct Failure {
 };
 
 using Message = std::variant<Hello, CameraUpdate, ViewerSettings, ClockRequest, Ack, Evicted, Welcome, EncodedBatch,
-                             Status, Failure>;
+                             Status, Failure, PathOrder, PathAnswer>;
 
 /// Largest message body that either side accepts, bytes: what the largest batch needs, with room.
 inline constexpr std::size_t max_message_bytes = 64u << 20;

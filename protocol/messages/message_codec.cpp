@@ -53,6 +53,10 @@ Message value_of(wire::Message const& message) {
         return value_of(*message.body_as_Status());
     case wire::Body::Failure:
         return value_of(*message.body_as_Failure());
+    case wire::Body::PathOrder:
+        return value_of(*message.body_as_PathOrder());
+    case wire::Body::PathAnswer:
+        return value_of(*message.body_as_PathAnswer());
     case wire::Body::NONE:
         break;
     }

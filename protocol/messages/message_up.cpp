@@ -8,13 +8,21 @@ namespace framelet {
 
 Offset<wire::Hello> write(Builder& builder, Hello const& value) {
     wire::Ticket const ticket = write(value.ticket);
+    Offset<wire::WorkOffer> work;
+    if (value.work) {
+        work = wire::CreateWorkOffer(builder, value.work->scene, value.work->light, value.work->threads);
+    }
     return wire::CreateHello(builder, value.version, write_text(builder, value.token, max_token_bytes), value.codings,
-                             value.ticket ? &ticket : nullptr, value.last_batch);
+                             value.ticket ? &ticket : nullptr, value.last_batch, work);
 }
 
 Hello read(wire::Hello const& wire) {
-    return {wire.version(), read_text(wire.token(), max_token_bytes), wire.codings(), read(wire.ticket()),
-            wire.last_batch()};
+    Hello hello{wire.version(), read_text(wire.token(), max_token_bytes), wire.codings(), read(wire.ticket()),
+                wire.last_batch()};
+    if (wire::WorkOffer const* const work = wire.work()) {
+        hello.work = {work->scene(), work->light(), work->threads()};
+    }
+    return hello;
 }
 
 char const* problem(Hello const&) {

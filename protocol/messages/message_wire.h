@@ -63,6 +63,14 @@ Offset<wire::Evicted> write(Builder& builder, Evicted const& value);
 Evicted read(wire::Evicted const& wire);
 char const* problem(Evicted const& value);
 
+// --- of workers
+Offset<wire::PathOrder> write(Builder& builder, PathOrder const& value);
+PathOrder read(wire::PathOrder const& wire);
+char const* problem(PathOrder const& value);
+Offset<wire::PathAnswer> write(Builder& builder, PathAnswer const& value);
+PathAnswer read(wire::PathAnswer const& wire);
+char const* problem(PathAnswer const& value);
+
 // --- downstream, and either direction
 Offset<wire::Welcome> write(Builder& builder, Welcome const& value);
 Welcome read(wire::Welcome const& wire);

@@ -40,6 +40,7 @@
 #include "server/session/loaded_scene.h"
 #include "server/session/loop/priority.h"
 #include "server/session/scene_reloader.h"
+#include "server/session/workers/work_for.h"
 #include "server/stream/event_log.h"
 
 namespace framelet {
@@ -70,10 +71,12 @@ void read_files(Options& options) {
     if (!options.control_token_file.empty()) {
         server.control_token = read_token_file(options.control_token_file);
     }
-    if (server.clock_from) {
-        server.clock_from->token = server.control_token.empty() ? server.token : server.control_token;
-        server.clock_from->tls = server.clock_from->tls || !server.tls_certificate.empty();
-        server.clock_from->authority_file = server.tls_certificate;
+    for (auto* const other : {&server.clock_from, &options.work_for}) {
+        if (*other) {
+            (*other)->token = server.control_token.empty() ? server.token : server.control_token;
+            (*other)->tls = (*other)->tls || !server.tls_certificate.empty();
+            (*other)->authority_file = server.tls_certificate;
+        }
     }
     if (!server.tls_certificate.empty()) {
         make_tls_server_context(server.tls_certificate, server.tls_key);
@@ -130,7 +133,7 @@ void end_with_who_asked(int news) {
 
 /// Prints what is in the scene, also where a server would refuse it because there is nothing to see: that is what one
 /// asks about.
-void print_info(Options options) {
+void print_info(Options& options) {
     if (options.news) {
         end_with_who_asked(*options.news);
         options.import.checker.clear(); // this is it
@@ -239,6 +242,24 @@ private:
     sigset_t before_{};
 };
 
+/// How many threads render.
+std::size_t thread_count(Options const& options) {
+    return options.threads > 0 ? static_cast<std::size_t>(options.threads)
+                               : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
+/// Traces paths for another server, until a signal ends it.
+void work(Options& options) {
+    read_files(options);
+    std::size_t const threads = thread_count(options);
+    tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
+    options.look.exposure_ev = 0; // it is the server's that counts
+    options.look.light.method = LightMethod::reference;
+    options.look.light_choice = LightChoice::told;
+    std::unique_ptr<LoadedScene> const loaded = load_scene(options, report(options));
+    work_for(*options.work_for, *loaded, threads);
+}
+
 void serve(Options& options) {
     std::optional<HangUpsWait> until_ready(std::in_place); // it is for a scene that is served
     auto listener = std::make_unique<Listener>(options.server.bind, options.server.port);
@@ -256,10 +277,7 @@ void serve(Options& options) {
         std::ranges::transform(listener->endpoints(), std::back_inserter(addresses), text_of);
         options.server.token = local_token.emplace(addresses).token();
     }
-    tbb::global_control const threads(
-        tbb::global_control::max_allowed_parallelism,
-        options.threads > 0 ? static_cast<std::size_t>(options.threads)
-                            : tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
+    tbb::global_control const threads(tbb::global_control::max_allowed_parallelism, thread_count(options));
     bool const had_terminal = has_terminal();
     std::vector<std::filesystem::path> scene_files;
     for (std::filesystem::path const& file : options.scenes) {
@@ -345,7 +363,10 @@ int main(int argc, char** argv) {
         if (framelet::asks_for_list(options)) {
             framelet::list_scenes(options.scenes.front(), options.list_as);
         } else {
-            options.info ? framelet::print_info(options) : framelet::serve(options);
+            auto* const does = options.info       ? &framelet::print_info
+                               : options.work_for ? &framelet::work
+                                                  : &framelet::serve;
+            does(options);
         }
         return 0;
     } catch (std::exception const& error) {

@@ -43,7 +43,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     bool insecure = false;
     std::string light;
     std::vector<std::string> proxied;
-    std::optional<std::string> clock_from;
+    std::optional<std::string> clock_from, work_for;
     std::string tone_curve = "neutral";
     std::uint64_t scene_megabytes = options.import.memory_bytes >> 20;
 
@@ -193,6 +193,14 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
         ->check(number_in(0, 1024))
         ->capture_default_str();
     app.add_option(
+           "--work-for", work_for,
+           "Serve nobody, but trace paths of light for the server at this address, which has the same scene and "
+           "options, the same token, and --light full or reference; encrypted where it is tls://HOST, or --tls-cert "
+           "is given")
+        ->type_name("HOST")
+        ->excludes(watch)
+        ->excludes(info);
+    app.add_option(
            "--nice", options.nice,
            "Niceness: 0 is that of other programs; with more the server leaves the processors to them, a viewer on "
            "this machine among them, whenever they want them")
@@ -249,11 +257,18 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
             options.look.light_choice = LightChoice::told;
             options.look.light.method = parse_light_method(light);
         }
+        auto const other_server = [insecure](std::string const& text) {
+            ConnectionOptions other;
+            other.server = parse_server_address(text);
+            other.tls = asks_for_tls(text);
+            other.insecure = insecure;
+            return other;
+        };
         if (clock_from) {
-            ConnectionOptions& leader = options.server.clock_from.emplace();
-            leader.server = parse_server_address(*clock_from);
-            leader.tls = asks_for_tls(*clock_from);
-            leader.insecure = insecure;
+            options.server.clock_from = other_server(*clock_from);
+        }
+        if (work_for) {
+            options.work_for = other_server(*work_for);
         }
         for (std::string const& network : proxied) {
             options.server.proxies.add(network);

@@ -36,6 +36,7 @@ struct Options {
     std::filesystem::path web_files; ///< folder of the page for browsers; empty: the one that is installed
     bool no_web = false; ///< browsers are not answered
     std::string web_origin; ///< of pages elsewhere that may connect; empty: none
+    std::optional<ConnectionOptions> work_for; ///< the server that it is a worker of; nothing: it is a server itself
     bool browser = false; ///< open the page with this desktop's browser
     ServerOptions server;
 };

@@ -76,7 +76,12 @@ FirstLook take_first_look(RenderScene const& scene, Camera const& camera, PathLi
         render_framelet(scene, view, plane, tiles[i], look[i]); // for what is hit
         if (light != nullptr) {
             TileSums sums;
-            trace_more_paths(*light, view, plane, rays_a_pixel, sums, look[i]);
+            TileLight brought;
+            while (sums.paths < rays_a_pixel) {
+                trace_tile(*light, view, plane, tiles[i], sums.paths, brought);
+                add_path(brought, sums);
+            }
+            set_means(sums, look[i]);
         } else {
             render_means(scene, view, plane, tiles[i], look[i]);
         }

@@ -18,18 +18,18 @@ void ConnectionTable::erase(std::uint64_t id) {
 }
 
 std::vector<std::shared_ptr<Session>> ConnectionTable::open_sessions() const {
-    return open_sessions(false);
-}
-
-std::vector<std::shared_ptr<Session>> ConnectionTable::clock_sessions() const {
     return open_sessions(true);
 }
 
-std::vector<std::shared_ptr<Session>> ConnectionTable::open_sessions(bool clock_only) const {
+std::vector<std::shared_ptr<Session>> ConnectionTable::other_sessions() const {
+    return open_sessions(false);
+}
+
+std::vector<std::shared_ptr<Session>> ConnectionTable::open_sessions(bool has_pictures) const {
     std::scoped_lock const lock(mutex_);
     std::vector<std::shared_ptr<Session>> open;
     for (auto const& [id, connection] : connections_) {
-        if (connection.session->is_open() && connection.session->hears_clock_only() == clock_only) {
+        if (connection.session->is_open() && connection.session->has_pictures() == has_pictures) {
             open.push_back(connection.session);
         }
     }

@@ -38,8 +38,8 @@ public:
 
     /// Sessions of viewers that were let in and have not left.
     std::vector<std::shared_ptr<Session>> open_sessions() const;
-    /// Sessions of those who hear the clock only, likewise.
-    std::vector<std::shared_ptr<Session>> clock_sessions() const;
+    /// Sessions of those who have no pictures, likewise: workers, and servers that follow the clock.
+    std::vector<std::shared_ptr<Session>> other_sessions() const;
     /// Sessions from which something has been waited for too long, and what.
     std::vector<std::pair<std::shared_ptr<Session>, std::string>>
     overdue(std::chrono::steady_clock::time_point now) const;
@@ -50,7 +50,7 @@ public:
     std::vector<std::uint64_t> take_remains();
 
 private:
-    std::vector<std::shared_ptr<Session>> open_sessions(bool clock_only) const;
+    std::vector<std::shared_ptr<Session>> open_sessions(bool has_pictures) const;
 
     mutable std::mutex mutex_;
     std::map<std::uint64_t, Connection> connections_; ///< changed on the io thread only

@@ -16,6 +16,7 @@
 #include <netinet/tcp.h>
 #include <spdlog/spdlog.h>
 
+#include "common/counted.h"
 #include "protocol/stream/handshake_thread.h"
 #include "protocol/stream/stream_opening.h"
 #include "protocol/stream/tls.h"
@@ -33,6 +34,7 @@
 #include "server/session/loop/loop_thread.h"
 #include "server/session/proxy_hall.h"
 #include "server/session/welcome.h"
+#include "server/workers/worker_pool.h"
 
 namespace framelet {
 
@@ -52,8 +54,8 @@ constexpr std::size_t viewer_lines = 20;
 /// A connection whose bytes nobody confirms for so long is dropped by the kernel, milliseconds.
 constexpr unsigned user_timeout_ms = 15000;
 /// Servers that follow this one's clock, and those of them from one source.
-constexpr std::size_t most_followers = 64;
-constexpr std::ptrdiff_t most_followers_of_source = 16;
+constexpr std::ptrdiff_t most_followers = 64, most_followers_of_source = 16;
+constexpr std::ptrdiff_t most_workers = 1024;
 
 /// What a picture at rest takes a pixel for its light.
 std::size_t light_bytes(PosedScene const& scene) {
@@ -98,6 +100,8 @@ struct Server::Impl {
     std::atomic<steady_clock::time_point> last_beat = steady_clock::now();
     BusyShare busy_share;
 
+    WorkerPool workers; ///< goes after the loop
+    std::uint64_t light; ///< `PosedScene::light_identity` of the scene
     std::shared_ptr<LoadedScene> loaded; ///< the scene that the loop looks at; null: it is the caller's
     LoopThread loop; ///< replaced on the io thread only; its figures may be asked for on any thread
 
@@ -108,7 +112,7 @@ struct Server::Impl {
           admission({given.token, given.control_token, given.shared_control, given.session_megabytes * 1'000'000,
                      light_bytes(scene)},
                     [this] { loop.wake(); }),
-          proxies(given.proxies), loop(make_loop(scene, given.loop)) {
+          proxies(given.proxies), light(scene.light_identity()), loop(make_loop(scene, given.loop)) {
         if (!options.tls_certificate.empty()) {
             tls = make_tls_server_context(options.tls_certificate, options.tls_key);
             handshakes.emplace();
@@ -122,9 +126,10 @@ struct Server::Impl {
         }
     }
 
-    std::unique_ptr<SessionLoop> make_loop(PosedScene& scene, LoopOptions const& loop_options) {
+    std::unique_ptr<SessionLoop> make_loop(PosedScene& scene, LoopOptions loop_options) {
+        loop_options.stream.workers = &workers;
         SessionLoop::Events events{[this] { return connections.open_sessions(); }, [this] { post_status(); }};
-        return std::make_unique<SessionLoop>(scene, clock.scene(), loop_options, std::move(events));
+        return std::make_unique<SessionLoop>(scene, clock.scene(), std::move(loop_options), std::move(events));
     }
 
     /// True where no viewer is here, or away for a moment.
@@ -148,7 +153,13 @@ struct Server::Impl {
                 end_in_need(*session, true);
             }
         }
+        for (auto const& session : connections.other_sessions()) {
+            if (session->is_worker()) { // whose scene is the one before
+                session->end("the scene is loaded again", true);
+            }
+        }
         admission.forget_viewers(light_bytes(next->posed));
+        light = next->posed.light_identity();
         welcome = std::move(next_welcome);
         loop.replace(std::move(next_loop)); // the one before goes before the scene that it looks at
         ++scenes;
@@ -233,6 +244,7 @@ struct Server::Impl {
         };
         events.changed = [this] { loop.wake(); };
         events.ended = [this, id](std::string const& reason) { end_session(id, reason); };
+        events.path_answer = [this, id](PathAnswer answer) { workers.answer(id, std::move(answer)); };
         events.sent = [this](std::size_t bytes) { sent_bytes += bytes; };
         return events;
     }
@@ -247,6 +259,9 @@ struct Server::Impl {
             // What the viewer says is newer than what is known of its connection.
             before->cut();
             remove(before->id(), "it has come back by another connection");
+        }
+        if (hello.work) {
+            return admit_worker(id, *hello.work);
         }
         if (hello.codings == coding::none) {
             return admit_follower(id, hello);
@@ -269,14 +284,52 @@ struct Server::Impl {
         return answer;
     }
 
+    /// How many there are already of those who have no pictures, workers or not; `source`: of one, unless it is empty.
+    std::ptrdiff_t count_others(bool workers_only, std::string const& source = {}) const {
+        return std::ranges::count_if(connections.all(), [&](auto const& other) {
+            Session const& session = *other.second.session;
+            return session.is_open() && !session.has_pictures() && session.is_worker() == workers_only &&
+                   (source.empty() || other.second.source == source);
+        });
+    }
+
+    /// Lets in who traces paths for this server.
+    std::variant<Welcome, Failure> admit_worker(std::uint64_t id, WorkOffer const& offer) {
+        if (light == 0) {
+            return Failure{"there is no work: the light of the scene is direct here, and quickly found"};
+        }
+        if (offer.scene != welcome.scene_identity || offer.light != light) {
+            return Failure{"the worker would find other light: start it with the same scene, the same environment and "
+                           "sizes of lights, from the same build and on the same kind of processor"};
+        }
+        if (count_others(true) >= most_workers) {
+            return Failure{"the server has as many workers as it can have", true};
+        }
+        Connection const& connection = *connections.find(id);
+        waiting.leave(id);
+        if (auto const more = come.next(steady_clock::now())) {
+            spdlog::info("a worker of {} joins from {}{}", counted(offer.threads, "thread"), connection.peer, *more);
+        }
+        auto const session = connection.session;
+        WorkerPool::Worker worker{std::max<std::size_t>(offer.threads, 1),
+                                  [session](PathOrder const& order) { session->send(order); },
+                                  [session](std::string const& reason) { session->end(reason); }};
+        asio::post(io, [this, id, worker = std::move(worker)]() mutable { // once it has been welcomed
+            if (connections.find(id) != nullptr) {
+                workers.join(id, std::move(worker));
+            }
+        });
+        Welcome answer = welcome;
+        answer.clock = clock.scene().state(steady_clock::now());
+        answer.controls = false;
+        return answer;
+    }
+
     /// Lets in a server that follows the clock.
     std::variant<Welcome, Failure> admit_follower(std::uint64_t id, Hello const& hello) {
         Connection const& connection = *connections.find(id);
-        auto const of_source = std::ranges::count_if(connections.all(), [&](auto const& other) {
-            return other.second.source == connection.source && other.second.session->is_open() &&
-                   other.second.session->hears_clock_only();
-        });
-        if (of_source >= most_followers_of_source || connections.clock_sessions().size() >= most_followers) {
+        if (count_others(false, connection.source) >= most_followers_of_source ||
+            count_others(false) >= most_followers) {
             return Failure{"too many servers follow this clock already", true};
         }
         waiting.leave(id);
@@ -340,6 +393,7 @@ struct Server::Impl {
     /// Forgets a connection. Needs no memory to do so.
     void forget(std::uint64_t id) {
         waiting.leave(id);
+        workers.leave(id);
         Connection const* const found = connections.find(id);
         admission.leave(id, found == nullptr ? nullptr : found->session.get());
         connections.erase(id);
@@ -351,10 +405,12 @@ struct Server::Impl {
             if (auto const more = gone.next(now)) {
                 spdlog::info("viewer {} left: {}{}", connection.session->number(), reason, *more);
             }
-        } else if (connection.session->hears_clock_only()) {
+        } else if (!connection.session->has_pictures()) {
             if (auto const more = gone.next(now)) {
-                spdlog::info("a server does not follow the clock any more, from {}: {}{}", connection.peer, reason,
-                             *more);
+                spdlog::info("{}, from {}: {}{}",
+                             connection.session->is_worker() ? "a worker has left"
+                                                             : "a server does not follow the clock any more",
+                             connection.peer, reason, *more);
             }
         } else if (connection.stream->asks_for_files()) {
             return; // a browser may keep such a connection open as long as it is let
@@ -376,11 +432,11 @@ struct Server::Impl {
             status.busy = busy;
             session->send(status);
         }
-        for (auto const& follower : connections.clock_sessions()) {
+        for (auto const& other : connections.other_sessions()) {
             Status status;
             status.clock = clock.scene().state(steady_clock::now());
-            status.controls = controls(follower->id());
-            follower->send(status);
+            status.controls = controls(other->id());
+            other->send(status);
         }
     }
 
@@ -468,6 +524,8 @@ struct Server::Impl {
         now.viewers = viewers;
         now.scenes = scenes;
         now.sent_bytes = sent_bytes;
+        now.workers = workers.workers();
+        now.worker_paths = workers.paths();
         now.resident_bytes = resident_bytes();
         loop.add_figures(now);
         return now;

@@ -168,6 +168,11 @@ std::uint32_t Session::codings() const {
     return codings_;
 }
 
+bool Session::is_worker() const {
+    std::scoped_lock const lock(mutex_);
+    return is_worker_;
+}
+
 std::uint64_t Session::take_events(std::vector<StreamEvent>& events) {
     events.clear();
     std::scoped_lock const lock(mutex_);
@@ -276,10 +281,12 @@ void Session::receive(Message message) {
     }
     if (!open) {
         receive_hello(message);
-    } else if (hears_clock_only() && !std::holds_alternative<ClockRequest>(message) &&
-               !std::holds_alternative<Failure>(message)) {
+    } else if (auto* const answer = std::get_if<PathAnswer>(&message); answer != nullptr && is_worker()) {
+        events_.path_answer(std::move(*answer));
+    } else if (!has_pictures() && !std::holds_alternative<Failure>(message) &&
+               (is_worker() || !std::holds_alternative<ClockRequest>(message))) {
         close("unexpected message");
-        events_.ended("who hears the clock only has sent something else");
+        events_.ended("who has no pictures has sent what only viewers may");
     } else if (auto const* const camera = std::get_if<CameraUpdate>(&message)) {
         receive_camera(*camera);
     } else if (auto const* const settings = std::get_if<ViewerSettings>(&message)) {
@@ -383,6 +390,7 @@ void Session::receive_hello(Message const& message) {
         open_ = true;
         last_progress_ = std::chrono::steady_clock::now();
         codings_ = hello->codings;
+        is_worker_ = hello->work.has_value();
     }
     stream_->send(std::get<Welcome>(std::move(answer)));
     events_.changed();

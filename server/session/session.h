@@ -33,6 +33,8 @@ public:
         /// Called once, when the connection is over; `reason` is one line. This one and the next may come from any
         /// thread.
         std::function<void(std::string const& reason)> ended;
+        /// Called when a worker has answered; empty: there are none.
+        std::function<void(PathAnswer)> path_answer = {};
         /// Called when a batch of so many bytes was handed to the connection; empty: nobody counts them.
         std::function<void(std::size_t bytes)> sent = {};
     };
@@ -72,8 +74,9 @@ public:
     /// is whoever waits for `ended`.
     void end(std::string const& reason, bool again = false, bool tells = true);
     bool is_open() const;
-    /// True where its viewer reads no pictures: it hears the scene's clock, as servers do that follow it.
-    bool hears_clock_only() const { return codings() == coding::none; }
+    /// False where nobody reads pictures: it is a worker's, or hears the scene's clock, as servers do that follow it.
+    bool has_pictures() const { return codings() != coding::none; }
+    bool is_worker() const;
     bool has_spoken() const; ///< a message has come
     bool has_ended() const;
     /// True where it was cut, and is gone on with if the viewer comes back.
@@ -134,6 +137,7 @@ private:
     bool parked_ = false; ///< ended by a cut, and may be gone on with
     std::shared_ptr<Session> earlier_; ///< the session to be taken over; it has none itself
     std::uint32_t codings_ = coding::exact_colour;
+    bool is_worker_ = false;
     std::uint64_t camera_number_ = 0; ///< newest that came; 0: none
     Viewport viewport_; ///< of the newest camera
     std::vector<StreamEvent> waiting_events_; ///< few: none of those that a newer one replaces

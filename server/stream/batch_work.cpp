@@ -41,7 +41,7 @@ void list_samples(std::span<Framelet const> rendered, std::span<std::uint8_t con
 
 } // namespace
 
-void BatchWork::render(PosedScene const& scene, PathSums& sums) {
+void BatchWork::render(PosedScene const& scene, PathSums& sums, WorkerPool* workers) {
     std::size_t const count = order.plan.tiles.size();
     rendered_pool_.resize(std::max(rendered_pool_.size(), count));
     display_pool_.resize(std::max(display_pool_.size(), count));
@@ -50,37 +50,34 @@ void BatchWork::render(PosedScene const& scene, PathSums& sums) {
     NumberedView const& view = order.state.view;
     ImagePlane const plane(view.viewport);
     ViewRays const rays = make_view_rays(view.camera, view.viewport);
-    fresh_.prepare();
-    std::atomic<std::uint64_t> segments = 0;
-    std::atomic<double> took = 0; // processor seconds
-    PathLight const* const light = scene.path_light();
-    if (light != nullptr) {
-        direct_.resize(std::max(direct_.size(), count));
-        errors_.assign(count, INFINITY);
-        if (order.plan.rays_per_sample > single_ray) {
-            sums.hold(plane);
-        }
-    }
+    int const rays_per_sample = order.plan.rays_per_sample;
+    bool const by_paths = scene.path_light() != nullptr;
     LightGathering* const gathering = scene.light_gathering();
-    std::size_t const packets =
-        gathering != nullptr ? gathering->plan(light_paths(*gathering, count), LightCache::Use::recent) : 0;
-    tbb::parallel_for(std::size_t{0}, count + packets, [&](std::size_t i) {
-        if (i >= count) {
-            gathering->follow(i - count);
-            return;
-        }
-        Laps laps;
-        segments.fetch_add(light != nullptr
-                               ? render_by_paths(scene, rays, plane, i, sums)
-                               : render_display(scene.render_scene(), rays, plane, order.plan.tiles[i],
-                                                order.state.transform, order.plan.rays_per_sample,
-                                                order.plan.will_be_moved, fresh_.local(), rendered_[i], display_[i]),
-                           std::memory_order_relaxed);
-        took.fetch_add(laps.lap(), std::memory_order_relaxed);
-    });
+    // Of surfaces there are no more than four rays, where the light cache shows their light, else one.
+    int const surface_rays =
+        by_paths ? (gathering != nullptr && rays_per_sample > single_ray ? four_rays : single_ray) : rays_per_sample;
+    std::size_t const paths = by_paths ? begin_paths(scene, sums, workers) : 0;
+    std::atomic<std::uint64_t> segments = paths;
+    std::atomic<double> took = 0; // processor seconds
+    fresh_.prepare();
+    if (!by_paths || are_shown(rays_per_sample)) {
+        std::span<DisplayFramelet> const shown = by_paths ? std::span(direct_).first(count) : display_;
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
+            Laps laps;
+            segments.fetch_add(render_display(scene.render_scene(), rays, plane, order.plan.tiles[i],
+                                              order.state.transform, surface_rays, order.plan.will_be_moved,
+                                              fresh_.local(), rendered_[i], shown[i]),
+                               std::memory_order_relaxed);
+            took.fetch_add(laps.lap(), std::memory_order_relaxed);
+        });
+    }
+    if (by_paths) {
+        round_.finish();
+        tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) { show_paths(scene, i, first_path_[i], sums); });
+    }
     if (gathering != nullptr) {
         // Samples at rest, of many paths each, say nothing of those in motion, by which paths are planned.
-        gathering->finish(order.plan.rays_per_sample == single_ray ? count * framelet_samples : 0, took);
+        gathering->finish(rays_per_sample == single_ray ? count * framelet_samples : 0, took);
     }
     if (order.plan.checks && order.plan.checks->visibility) {
         segments +=
@@ -91,6 +88,41 @@ void BatchWork::render(PosedScene const& scene, PathSums& sums) {
         probes_.render(scene.render_scene(), view.camera, view.viewport, order.state.transform, order.plan.probes);
 }
 
+/// Begins with the paths of all framelets, and with some for the light cache. Returns how many the former are.
+std::size_t BatchWork::begin_paths(PosedScene const& scene, PathSums& sums, WorkerPool* workers) {
+    std::size_t const count = order.plan.tiles.size();
+    int const most = order.plan.rays_per_sample;
+    LightGathering* const gathering = scene.light_gathering();
+    direct_.resize(std::max(direct_.size(), count));
+    errors_.assign(count, INFINITY);
+    first_path_.resize(count);
+    std::vector<TilePath> paths;
+    if (most > single_ray) {
+        sums.hold(ImagePlane(order.state.view.viewport));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+        first_path_[i] = paths.size();
+        Tile const tile = order.plan.tiles[i];
+        if (most > single_ray) {
+            TileSums& before = sums[tile];
+            if (before.paths >= most) { // they begin anew
+                before = {};
+            }
+            for (int path = before.paths; path < most; ++path) {
+                paths.push_back({tile, static_cast<std::uint32_t>(path)});
+            }
+        } else if (gathering == nullptr) {
+            paths.push_back({tile, 0});
+        }
+    }
+    std::size_t const traced = paths.size() * framelet_samples;
+    std::size_t const packets =
+        gathering != nullptr ? gathering->plan(light_paths(*gathering, count), LightCache::Use::recent) : 0;
+    round_.begin(workers, *scene.path_light(), {order.state.scene_time, order.state.view}, std::move(paths), gathering,
+                 packets);
+    return traced;
+}
+
 /// Paths for the light cache, as long as it wants some, beside so many framelets: at rest as many as these have.
 std::size_t BatchWork::light_paths(LightGathering const& gathering, std::size_t framelets) const {
     std::size_t const samples = framelets * framelet_samples;
@@ -98,38 +130,35 @@ std::size_t BatchWork::light_paths(LightGathering const& gathering, std::size_t 
     return rays > single_ray ? samples * static_cast<std::size_t>(new_rays(rays)) : gathering.paths_beside(samples);
 }
 
-/// Renders a framelet with the light of paths, and where its surfaces lie. Returns how many rays and paths that took.
-std::uint32_t BatchWork::render_by_paths(PosedScene const& scene, ViewRays const& rays, ImagePlane const& plane,
-                                         std::size_t index, PathSums& sums) {
-    PathLight const& light = *scene.path_light();
+/// Adds a framelet's paths, the first of which is number `first_path` of the round, and decides by what it is shown.
+void BatchWork::show_paths(PosedScene const& scene, std::size_t index, std::size_t first_path, PathSums& sums) {
     bool const has_cache = scene.light_gathering() != nullptr;
     int const paths = order.plan.rays_per_sample;
     DisplayTransform const& transform = order.state.transform;
-    Framelet& fresh = fresh_.local();
-    fresh.tile = order.plan.tiles[index];
-    std::uint32_t segments = static_cast<std::uint32_t>(framelet_samples * new_rays(paths));
-    if (are_shown(paths)) {
-        int const rays_per_sample = has_cache && paths > single_ray ? four_rays : single_ray;
-        segments += render_display(scene.render_scene(), rays, plane, fresh.tile, transform, rays_per_sample,
-                                   order.plan.will_be_moved, fresh, rendered_[index], direct_[index]);
-        rendered_[index].is_supersampled = paths > single_ray;
-        fresh.tile = order.plan.tiles[index];
+    bool shows_paths = !has_cache;
+    TileSums first;
+    TileSums& tile_sums = paths > single_ray ? sums[order.plan.tiles[index]] : first;
+    if (paths > single_ray || !has_cache) {
+        for (std::size_t i = first_path; tile_sums.paths < paths; ++i) {
+            add_path(round_.light()[i], tile_sums);
+        }
     }
-    bool shows_paths = true;
     if (paths > single_ray) {
-        TileSums& tile_sums = sums[fresh.tile];
-        trace_more_paths(light, rays, plane, paths, tile_sums, fresh);
         errors_[index] = squared_error(tile_sums, transform);
         shows_paths = !has_cache || errors_[index] <= smooth_enough || paths >= completion_of_paths.most_rays;
-    } else if (has_cache) {
-        shows_paths = false;
-    } else {
-        trace_first_paths(light, rays, plane, fresh);
     }
-    if (are_shown(paths)) {
-        display_[index] = shows_paths ? to_display(fresh, transform) : direct_[index];
+    if (!are_shown(paths)) {
+        return;
     }
-    return segments;
+    rendered_[index].is_supersampled = paths > single_ray;
+    if (!shows_paths) {
+        display_[index] = direct_[index];
+        return;
+    }
+    Framelet& fresh = fresh_.local();
+    fresh.tile = order.plan.tiles[index];
+    set_means(tile_sums, fresh);
+    display_[index] = to_display(fresh, transform);
 }
 
 bool BatchWork::learn(PosedScene& scene, ViewerKnowledge& viewer) {

@@ -14,6 +14,7 @@
 #include "server/stream/layers/shape_feed.h"
 #include "server/stream/posed_scene.h"
 #include "server/stream/viewer_stream.h"
+#include "server/workers/path_round.h"
 
 namespace framelet {
 
@@ -45,9 +46,9 @@ public:
     BatchOrder order; ///< set before `render`
     TurnFigures figures;
 
-    /// Renders what is ordered, in parallel on the calling TBB arena. `sums` are of the viewer's picture, where it is
-    /// at rest and its light is found by paths.
-    void render(PosedScene const& scene, PathSums& sums);
+    /// Renders what is ordered, in parallel on the calling TBB arena, paths with the workers (null: there are none).
+    /// `sums` are of the viewer's picture, where it is at rest and its light is found by paths.
+    void render(PosedScene const& scene, PathSums& sums, WorkerPool* workers);
     /// Learns what was rendered; chooses QPs, makes shapes. Not to be called while the viewer's knowledge is used
     /// otherwise. False where there is nothing to send.
     bool learn(PosedScene& scene, ViewerKnowledge& viewer);
@@ -59,8 +60,8 @@ public:
     Batch const& batch() const { return batch_; }
 
 private:
-    std::uint32_t render_by_paths(PosedScene const& scene, ViewRays const& rays, ImagePlane const& plane,
-                                  std::size_t index, PathSums& sums);
+    std::size_t begin_paths(PosedScene const& scene, PathSums& sums, WorkerPool* workers);
+    void show_paths(PosedScene const& scene, std::size_t index, std::size_t first_path, PathSums& sums);
     std::size_t light_paths(LightGathering const& gathering, std::size_t framelets) const;
     void describe_shapes(PosedScene& scene, ViewerKnowledge& viewer);
     void fill_batch(ViewerKnowledge& viewer);
@@ -74,6 +75,8 @@ private:
     /// paths.
     std::vector<DisplayFramelet> direct_;
     std::vector<float> errors_; ///< left by paths, of each framelet; empty: there are none
+    PathRound round_;
+    std::vector<std::size_t> first_path_; ///< of each framelet, among those of the round
     ProbeRenderer probes_;
     std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
     std::vector<std::uint8_t> needed_; ///< by framelet: whether the viewer gets it

@@ -195,6 +195,7 @@ void EventLog::add_turn(std::uint64_t session, Turn const& given, Step step) {
          {given.now, given.present, given.clock_speed, given.samples_per_second, given.plan_seconds}) {
         put(content, number);
     }
+    put(content, given.busy_framelets);
     put(content, step);
     write(session, turn, content);
 }
@@ -282,6 +283,7 @@ std::optional<LogRecord> EventLogReader::next() {
              {&given.now, &given.present, &given.clock_speed, &given.samples_per_second, &given.plan_seconds}) {
             *number = content.take<double>();
         }
+        given.busy_framelets = content.take<std::uint64_t>();
         return LogRecord{session, TurnGiven{given, static_cast<Step>(content.take<std::uint8_t>())}};
     }
     case learning:

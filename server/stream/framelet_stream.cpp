@@ -251,6 +251,7 @@ Step FrameletStream::plan_batch(Turn const& turn, ViewState const& present, Pose
     wanted.limits = options_.limits;
     if (scene.path_light() != nullptr) {
         wanted.completion = completion_of_paths;
+        wanted.least_framelets = scene.light_gathering() == nullptr ? turn.busy_framelets : 1;
         wanted.limits.most_level = std::min(wanted.limits.most_level, completion_of_paths.finest);
         wanted.limits.most_rays = single_ray;
     }
@@ -316,7 +317,7 @@ void FrameletStream::set_planned(BatchWork& work) {
 
 void FrameletStream::render(PosedScene const& scene) {
     FRAMELET_CHECK(planned_ != nullptr);
-    planned_->render(scene, sums_);
+    planned_->render(scene, sums_, options_.workers);
 }
 
 bool FrameletStream::learn(PosedScene& scene) {

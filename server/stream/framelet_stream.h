@@ -18,6 +18,7 @@ struct StreamOptions {
     ToneCurve tone_curve = ToneCurve::neutral;
     std::size_t batch_framelets = 0; ///< most framelets of one batch; 0: what half a cycle has time for
     double bias = 0; ///< -1 (spatial fidelity) .. 1 (temporal), before the viewer's own
+    WorkerPool* workers = nullptr; ///< who trace paths with this process; null: nobody
     // The evaluation leaves parts out, to see what each is worth.
     ResponseLimits limits{};
     bool follows_link = true; ///< rate and batches are bounded by what the link carries

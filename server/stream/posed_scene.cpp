@@ -1,10 +1,13 @@
 #include "server/stream/posed_scene.h"
 
+#include <algorithm>
+#include <bit>
 #include <utility>
 
 #include <glm/geometric.hpp>
 #include <tbb/global_control.h>
 
+#include "common/mix_bits.h"
 #include "server/scene/motion/bodies.h"
 
 namespace framelet {
@@ -25,6 +28,7 @@ void PosedScene::light_with(LightOptions const& light) {
     render_scene_.set_light(nullptr, {});
     light_cache_.reset();
     path_light_.reset();
+    light_identity_ = 0;
     if (light.method == LightMethod::direct) {
         return;
     }
@@ -32,11 +36,13 @@ void PosedScene::light_with(LightOptions const& light) {
     PathOptions options;
     options.sizes = lamp_sizes(light, bounds);
     path_light_ = std::make_unique<PathLight>(render_scene_.prepared(), options);
+    std::vector<Camera> cameras = first_cameras(bounds);
+    light_identity_ = probe_light(cameras.front());
     if (light.method == LightMethod::full) {
         light_cache_ = std::make_unique<LightCache>(bounds.empty() ? 1.0f : glm::length(bounds.size()));
         gathering_ = std::make_unique<LightGathering>(*path_light_, *light_cache_);
         render_scene_.set_light(light_cache_.get(), options.sizes);
-        walk_.emplace(first_cameras(bounds));
+        walk_.emplace(std::move(cameras));
         learn_first_light();
     }
 }
@@ -59,7 +65,28 @@ void PosedScene::learn_first_light() {
     }
 }
 
-bool PosedScene::learn_light() {
+/// A digest of what a path through each sample of a small picture brings, of which program and processor have a part.
+std::uint64_t PosedScene::probe_light(Camera const& camera) const {
+    constexpr Viewport probe{32, 32};
+    ImagePlane const plane(probe);
+    ViewRays const rays = make_view_rays(camera, probe);
+    std::uint64_t digest = 1;
+    TileLight light;
+    for (std::uint32_t code = 1u << (2 * plane.pixel_depth()); code < 2u << (2 * plane.pixel_depth()); ++code) {
+        if (!plane.accepts({code})) {
+            continue;
+        }
+        trace_tile(*path_light_, rays, plane, {code}, 0, light);
+        for (auto const* const channel : {&light.red, &light.green, &light.blue}) {
+            for (float const value : *channel) {
+                digest = mix_in(digest, std::bit_cast<std::uint32_t>(value));
+            }
+        }
+    }
+    return std::max(digest, std::uint64_t{1});
+}
+
+bool PosedScene::learn_light(WorkerPool* workers) {
     constexpr double slice = 0.008; // seconds: whoever comes meanwhile waits so long
     constexpr std::size_t paths_a_look = 1 << 16;
     if (!gathering_) {
@@ -72,7 +99,11 @@ bool PosedScene::learn_light() {
     }
     auto const threads =
         static_cast<double>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism));
-    paths_since_look_ += gathering_->work(gathering_->paths_in(slice * threads));
+    std::size_t const packets = gathering_->plan(gathering_->paths_in(slice * threads), LightCache::Use::any);
+    PathRound round;
+    round.begin(workers, *path_light_, {rendered_.value_or(0), {}}, {}, gathering_.get(), packets);
+    round.finish();
+    paths_since_look_ += gathering_->finish();
     return gathering_->is_learning() || !walk_->is_over();
 }
 

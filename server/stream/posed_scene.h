@@ -14,6 +14,7 @@
 #include "server/render/prepared/render_scene.h"
 #include "server/scene/motion/animation.h"
 #include "server/scene/motion/switches.h"
+#include "server/workers/path_round.h"
 
 namespace framelet {
 
@@ -45,7 +46,11 @@ public:
     void light_with(LightOptions const& light);
     /// Learns light that nobody waits for, for some milliseconds on the calling TBB arena: what was looked at lately,
     /// then what viewers may come to see. False once all of it is good enough.
-    bool learn_light();
+    /// `workers`, where there are some, help with it.
+    bool learn_light(WorkerPool* workers = nullptr);
+    /// What paths bring in its first pose: the same number for every process that finds the same light of the same
+    /// scene, to the last bit, and hardly ever for another. 0 where light is direct.
+    std::uint64_t light_identity() const { return light_identity_; }
 
     /// Moves everything that is rendered to where it is at `time`; nothing where it is there already. Throws
     /// SceneUnposed where it cannot; until it can, nothing is to be rendered.
@@ -62,6 +67,7 @@ public:
 private:
     std::vector<Camera> first_cameras(Bounds const& bounds);
     void learn_first_light();
+    std::uint64_t probe_light(Camera const& camera) const;
 
     Scene const& scene_;
     std::vector<Index> const clips_;
@@ -75,6 +81,7 @@ private:
     std::unique_ptr<LightGathering> gathering_;
     std::optional<LightWalk> walk_; ///< where light is gathered
     std::size_t paths_since_look_ = 0; ///< of the walk
+    std::uint64_t light_identity_ = 0;
     /// The time that the renderer's scene is posed for; nothing: posing it failed half way.
     std::optional<SceneTime> rendered_ = 0;
 };

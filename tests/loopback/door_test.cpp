@@ -5,13 +5,11 @@
 #include <sstream>
 #include <thread>
 
-#include <boost/asio/io_context.hpp>
-#include <boost/asio/ip/tcp.hpp>
 #include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
 
 #include "tests/loopback/metrics_page.h"
 #include "tests/loopback/process.h"
+#include "tests/loopback/shown_frames.h"
 
 namespace framelet::test {
 namespace {
@@ -24,12 +22,6 @@ std::string const haproxy = "/usr/sbin/haproxy";
 
 std::string port_of(std::string const& address) {
     return address.substr(address.rfind(':') + 1);
-}
-
-std::string free_port() {
-    boost::asio::io_context io;
-    tcp::acceptor const acceptor(io, {boost::asio::ip::address_v4::loopback(), 0});
-    return std::to_string(acceptor.local_endpoint().port());
 }
 
 std::string replaced(std::string text, std::string const& from, std::string const& to) {
@@ -78,34 +70,6 @@ private:
     std::string port_ = free_port();
     std::unique_ptr<Process> haproxy_;
 };
-
-struct Shown {
-    double seconds = 0; ///< Unix time
-    double samples = 0; ///< that have come so far
-};
-
-std::vector<Shown> shown_in(std::string const& lines) {
-    std::vector<Shown> all;
-    std::istringstream in(lines);
-    for (std::string line; std::getline(in, line) && !in.eof();) { // the last line may not be whole yet
-        auto const frame = nlohmann::json::parse(line);
-        all.push_back({frame.at("unix_seconds").get<double>(), frame.at("samples").get<double>()});
-    }
-    return all;
-}
-
-/// The longest time without a new sample from `since` on, seconds.
-double longest_gap(std::vector<Shown> const& shown, double since) {
-    double longest = 0, last = 0, samples = -1;
-    for (Shown const& frame : shown) {
-        if (frame.samples != samples) {
-            longest = last > 0 && frame.seconds >= since ? std::max(longest, frame.seconds - last) : longest;
-            samples = frame.samples;
-            last = frame.seconds;
-        }
-    }
-    return longest;
-}
 
 TEST(Door, AllSeePicturesAgainWhenOneOfTwoServersIsKilled) {
     if (!std::filesystem::exists(haproxy)) {

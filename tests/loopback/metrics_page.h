@@ -37,6 +37,13 @@ inline http::response<http::string_body> ask(std::string const& address, std::st
     return answer;
 }
 
+/// A port that nobody listens at, for the moment.
+inline std::string free_port() {
+    boost::asio::io_context io;
+    tcp::acceptor const acceptor(io, {boost::asio::ip::address_v4::loopback(), 0});
+    return std::to_string(acceptor.local_endpoint().port());
+}
+
 inline double metric(std::string const& page, std::string const& name) {
     std::size_t const at = page.find("\n" + name + " ");
     return at == std::string::npos ? -1 : std::stod(page.substr(at + name.size() + 2));

@@ -135,10 +135,41 @@ public:
         return message;
     }
 
+    Hello hello() {
+        Hello hello{static_cast<std::uint16_t>(any64()), text(4096), any32(), ticket(), any64()};
+        if (coin()) {
+            hello.work = {any64(), any64(), static_cast<std::uint16_t>(any64())};
+        }
+        return hello;
+    }
+
+    PathOrder order() {
+        PathOrder order{any64(), any64(), number(0, 1e9), view(), {}, {}, {}};
+        order.display = {small(1e-5, 1e5), static_cast<ToneCurve>(integer(0, 3))};
+        if (coin()) {
+            for (Tile const tile : tiles(ImagePlane(order.view.viewport), max_order_tiles)) {
+                order.tiles.push_back({tile, any32()});
+            }
+            return order;
+        }
+        for (std::uint64_t i = integer(0, 3) == 0 ? max_order_places : integer(0, 5); i > 0; --i) {
+            order.places.push_back(
+                {any32(), vector(), glm::normalize(vector() + Vec3(0.1f)), any32(), any32(), small(0, 1e9)});
+        }
+        return order;
+    }
+
+    PathAnswer path_answer() {
+        PathAnswer answer{any64(), any32(), {}};
+        answer.light.resize(integer(0, 3) == 0 ? max_order_tiles * 3 * framelet_samples : integer(0, 9));
+        std::ranges::generate(answer.light, [this] { return small(-1e6, 1e6); });
+        return answer;
+    }
+
     Message message() {
-        switch (integer(0, 9)) {
+        switch (integer(0, 11)) {
         case 0:
-            return Hello{static_cast<std::uint16_t>(any64()), text(4096), any32(), ticket(), any64()};
+            return hello();
         case 1:
             return CameraUpdate{view(), static_cast<int>(number(-1, 4095))};
         case 2:
@@ -157,6 +188,10 @@ public:
             return Status{clock(), any64(),         any64(),
                           coin(),  number(0, 1e12), any32(),
                           coin(),  any64(),         static_cast<float>(number(0, 1))};
+        case 9:
+            return order();
+        case 10:
+            return path_answer();
         default:
             return Failure{text(4096), coin()};
         }

@@ -56,7 +56,12 @@ Traced traced(LitBall const& ball, std::vector<int> const& steps) {
         Framelet framelet;
         framelet.tile = tile;
         for (int const paths : steps) {
-            trace_more_paths(light, view, plane, paths, sums[tile], framelet);
+            TileLight brought;
+            while (sums[tile].paths < paths) {
+                trace_tile(light, view, plane, tile, sums[tile].paths, brought);
+                add_path(brought, sums[tile]);
+            }
+            set_means(sums[tile], framelet);
         }
         out.squared_error += static_cast<double>(squared_error(sums[tile], 1)) / static_cast<double>(tiles.size());
         PixelRect const rect = plane.tile_rect(tile);

@@ -11,9 +11,9 @@ namespace framelet {
 
 class RunningServer {
 public:
-    explicit RunningServer(ServerOptions options = {}, Scene scene = triangle_scene())
+    explicit RunningServer(ServerOptions options = {}, Scene scene = triangle_scene(), LightOptions const& light = {})
         : scene_(std::move(scene)), render_scene_(scene_, std::nullopt),
-          posed_(scene_, default_clips(scene_), render_scene_), server_(posed_, on_free_port(options)),
+          posed_(scene_, default_clips(scene_), render_scene_, light), server_(posed_, on_free_port(options)),
           thread_([this] { server_.run(); }) {}
     ~RunningServer() { server_.stop(); }
 

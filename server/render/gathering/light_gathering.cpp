@@ -48,54 +48,23 @@ struct Gathering {
     PathNumbers numbers;
     GatheredLanes brought;
 
-    /// Lets path `number` of a record be a lane's.
-    void set(int lane, PathScene const& scene, LightRecord const& record, std::uint32_t seed, std::uint32_t number) {
-        LightFrame const frame = light_frame(scene.scene, record.place.frame);
-        position.set(lane, frame.linear * record.place.position + frame.translation);
-        normal.set(lane, glm::normalize(frame.rotation * record.place.normal));
-        numbers.pixel_seed[lane] = seed_of(record.key, seed);
+    /// Lets path `number` from a place be a lane's.
+    void set(int lane, LightFrame const& frame, LightPlace const& place, std::uint32_t seed, std::uint32_t number) {
+        position.set(lane, frame.linear * place.position + frame.translation);
+        normal.set(lane, glm::normalize(frame.rotation * place.normal));
+        numbers.pixel_seed[lane] = seed;
         numbers.sample[lane] = number;
     }
-    void follow(PathScene const& scene, PathOptions const& options, LaneMask active) {
+    void follow(PathLight const& light, LaneMask active, KnownLight const& known = {}) {
         Footprint footprint{};
         footprint.slope.fill(gather_slope);
-        gather_light(scene, options, position, normal, active, footprint, numbers, brought);
+        PathOptions options = light.options();
+        options.sure_bounces = sure_bounces;
+        options.known = known.cache;
+        options.known_pose = known.pose;
+        gather_light(light.scene(), options, position, normal, active, footprint, numbers, brought);
     }
 };
-
-/// Follows a packet of paths from the place of a record; sets `first` to the luminance of the first. `bright`:
-/// luminance beyond which what a path brings is kept apart. Paths end at surfaces of which the light is known.
-GatheredLight gather_packet(PathScene const& scene, PathOptions options, LightCache const& known,
-                            LightRecord const& record, float bright, float& first) {
-    Gathering gathering;
-    for (int i = 0; i < lanes; ++i) {
-        gathering.set(i, scene, record, options.seed,
-                      static_cast<std::uint32_t>(record.own) + static_cast<std::uint32_t>(i));
-    }
-    if (record.own > 0) { // the first path is what checks follow again: by itself
-        options.known = &known;
-        options.known_pose = record.checked;
-    }
-    gathering.follow(scene, options, all_lanes);
-    GatheredLanes const& brought = gathering.brought;
-    Vec3 const facet = gathering.normal.get(0);
-    GatheredLight out;
-    out.paths = lanes;
-    for (int i = 0; i < lanes; ++i) {
-        Vec3 const lean = brought.lean.get(i);
-        float const shade = luminance(brought.all.get(i));
-        float const part = shade > bright ? bright / shade : 1;
-        out.sum.add({brought.all.get(i) * part, brought.reflected.get(i) * part,
-                     (lean - facet * glm::dot(facet, lean)) * part, brought.open[i]},
-                    1);
-        out.excess += shade * (1 - part);
-        out.squares += shade * part * shade * part;
-        out.nearness += brought.nearness[i];
-    }
-    out.sum.lean = glm::transpose(light_frame(scene.scene, record.place.frame).rotation) * out.sum.lean;
-    first = luminance(brought.all.get(0));
-    return out;
-}
 
 /// Takes up to `most` of the next records of a list.
 void take(std::vector<std::uint32_t> const& from, std::size_t& next, std::size_t most,
@@ -112,10 +81,35 @@ std::size_t packets_of(std::size_t paths) {
 
 } // namespace
 
-LightGathering::LightGathering(PathLight const& light, LightCache& cache)
-    : light_(light), options_(light.options()), cache_(cache) {
-    options_.sure_bounces = sure_bounces;
+GatheredPacket gather_packet(PathLight const& light, PlaceGathering const& wanted, KnownLight const& known) {
+    FlushDenormals const flush;
+    Gathering gathering;
+    LightFrame const frame = light_frame(light.scene().scene, wanted.place.frame);
+    for (int i = 0; i < lanes; ++i) {
+        gathering.set(i, frame, wanted.place, wanted.seed, wanted.first + static_cast<std::uint32_t>(i));
+    }
+    gathering.follow(light, all_lanes, known);
+    GatheredLanes const& brought = gathering.brought;
+    Vec3 const facet = gathering.normal.get(0);
+    GatheredPacket out;
+    out.light.paths = lanes;
+    for (int i = 0; i < lanes; ++i) {
+        Vec3 const lean = brought.lean.get(i);
+        float const shade = luminance(brought.all.get(i));
+        float const part = shade > wanted.bright ? wanted.bright / shade : 1;
+        out.light.sum.add({brought.all.get(i) * part, brought.reflected.get(i) * part,
+                           (lean - facet * glm::dot(facet, lean)) * part, brought.open[i]},
+                          1);
+        out.light.excess += shade * (1 - part);
+        out.light.squares += shade * part * shade * part;
+        out.light.nearness += brought.nearness[i];
+    }
+    out.light.sum.lean = glm::transpose(frame.rotation) * out.light.sum.lean;
+    out.first = luminance(brought.all.get(0));
+    return out;
 }
+
+LightGathering::LightGathering(PathLight const& light, LightCache& cache) : light_(light), cache_(cache) {}
 
 void LightGathering::note_pose() {
     cache_.note_pose();
@@ -156,55 +150,66 @@ std::size_t LightGathering::plan(std::size_t most_paths, LightCache::Use use) {
     take(wanted_, next_wanted_, (most_paths - checks_.size()) / lanes, gathers_);
     checked_.resize(checks_.size());
     gathered_.resize(gathers_.size());
-    first_.resize(gathers_.size());
     return packets_of(checks_.size()) + gathers_.size();
 }
 
 void LightGathering::follow(std::size_t packet) {
-    FlushDenormals const flush;
     Laps laps;
-    if (packet < gathers_.size()) {
-        LightRecord const& record = cache_.records()[gathers_[packet]];
-        gathered_[packet] = gather_packet(light_.scene(), options_, cache_, record,
-                                          cache_.bright_path(gathers_[packet]), first_[packet]);
+    if (auto const wanted = order(packet)) {
+        // Paths end at surfaces of which the light is known. The first is what checks follow again: by itself.
+        std::uint32_t const pose = cache_.records()[gathers_[packet]].checked;
+        gathered_[packet] = gather_packet(light_, *wanted, {wanted->first > 0 ? &cache_ : nullptr, pose});
     } else {
         follow_check(packet - gathers_.size());
     }
     took_.fetch_add(laps.lap(), std::memory_order_relaxed);
 }
 
+std::optional<PlaceGathering> LightGathering::order(std::size_t packet) const {
+    if (packet >= gathers_.size()) { // a check is of many places, and compared with what was found here
+        return std::nullopt;
+    }
+    std::uint32_t const number = gathers_[packet];
+    LightRecord const& record = cache_.records()[number];
+    return PlaceGathering{record.place, seed_of(record.key, light_.options().seed),
+                          static_cast<std::uint32_t>(record.own), cache_.bright_path(number)};
+}
+
 /// Follows the first paths of sixteen records again.
 void LightGathering::follow_check(std::size_t packet) {
+    FlushDenormals const flush;
     std::size_t const begin = packet * lanes;
     int const count = static_cast<int>(std::min<std::size_t>(lanes, checks_.size() - begin));
     Gathering gathering;
     for (int i = 0; i < lanes; ++i) { // unused lanes repeat the last
-        std::size_t const record = checks_[begin + static_cast<std::size_t>(std::min(i, count - 1))];
-        gathering.set(i, light_.scene(), cache_.records()[record], options_.seed, 0);
+        LightRecord const& record = cache_.records()[checks_[begin + static_cast<std::size_t>(std::min(i, count - 1))]];
+        gathering.set(i, light_frame(light_.scene().scene, record.place.frame), record.place,
+                      seed_of(record.key, light_.options().seed), 0);
     }
-    gathering.follow(light_.scene(), options_, all_lanes >> (lanes - count));
+    gathering.follow(light_, all_lanes >> (lanes - count));
     for (int i = 0; i < count; ++i) {
         checked_[begin + static_cast<std::size_t>(i)] = luminance(gathering.brought.all.get(i));
     }
 }
 
-void LightGathering::finish(std::size_t samples, double samples_took) {
-    share_.note(samples, samples_took, checks_.size() + gathers_.size() * lanes, took_.exchange(0));
+std::size_t LightGathering::finish(std::size_t samples, double samples_took) {
+    std::size_t const paths = checks_.size() + gathers_.size() * lanes;
+    share_.note(samples, samples_took, paths, took_.exchange(0));
     for (std::size_t i = 0; i < checks_.size(); ++i) {
         cache_.check(checks_[i], checked_[i]);
     }
     for (std::size_t i = 0; i < gathers_.size(); ++i) {
-        cache_.add(gathers_[i], gathered_[i], first_[i]);
+        cache_.add(gathers_[i], gathered_[i].light, gathered_[i].first);
     }
     cache_.renew(renewed_share * gathers_.size());
+    return paths;
 }
 
 std::size_t LightGathering::work(std::size_t most_paths, LightCache::Use use, std::size_t samples,
                                  double samples_took) {
     std::size_t const packets = plan(most_paths, use);
     tbb::parallel_for(std::size_t{0}, packets, [&](std::size_t i) { follow(i); });
-    finish(samples, samples_took);
-    return checks_.size() + gathers_.size() * lanes;
+    return finish(samples, samples_took);
 }
 
 } // namespace framelet

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <optional>
 #include <vector>
 
 #include "server/render/cache/light_cache.h"
@@ -10,6 +11,28 @@
 #include "server/render/path/path_light.h"
 
 namespace framelet {
+
+/// Sixteen paths from a place of the light cache.
+struct PlaceGathering {
+    LightPlace place;
+    std::uint32_t seed = 0; ///< of their random numbers
+    std::uint32_t first = 0; ///< number of the first, among those of the place
+    float bright = 0; ///< luminance from which on what a path brings is kept apart
+};
+
+struct GatheredPacket {
+    GatheredLight light;
+    float first = 0; ///< luminance that the first path has brought
+};
+
+/// Light by which paths may end early.
+struct KnownLight {
+    LightCache const* cache = nullptr; ///< null: they do not
+    std::uint32_t pose = 0; ///< of the scene, that it was checked in
+};
+
+/// Follows paths from a place, on the calling thread.
+GatheredPacket gather_packet(PathLight const& light, PlaceGathering const& wanted, KnownLight const& known = {});
 
 class LightGathering {
 public:
@@ -27,25 +50,30 @@ public:
     std::size_t plan(std::size_t most_paths, LightCache::Use use);
     /// Follows one of the packets that were planned. Others may be followed, and the cache be looked up, meanwhile.
     void follow(std::size_t packet);
+    /// Where a packet's paths begin, for somebody else to follow them; nothing: it is for this process alone.
+    std::optional<PlaceGathering> order(std::size_t packet) const;
+    /// Takes in what somebody else has made of that; in place of `follow`.
+    void take_gathered(std::size_t packet, GatheredPacket const& gathered) { gathered_[packet] = gathered; }
+    /// Notes that threads have waited for somebody else's packets, seconds: these cost that much.
+    void note_waited(double seconds) { took_.fetch_add(seconds, std::memory_order_relaxed); }
     /// Teaches the cache what all the packets have brought. Nothing may look up meanwhile, nor while paths are planned.
-    /// Beside them so many samples took so many processor seconds.
-    void finish(std::size_t samples = 0, double samples_took = 0);
+    /// Beside them so many samples took so many processor seconds. Returns how many paths there were.
+    std::size_t finish(std::size_t samples = 0, double samples_took = 0);
+
+    /// All of that, in parallel on the calling TBB arena. Returns how many paths that took.
+    std::size_t work(std::size_t most_paths, LightCache::Use use = LightCache::Use::any, std::size_t samples = 0,
+                     double samples_took = 0);
 
     /// Paths that are as many as there is time for beside so many samples.
     std::size_t paths_beside(std::size_t samples) const { return share_.paths_beside(samples); }
     /// Paths that take so many processor seconds, about.
     std::size_t paths_in(double seconds) const { return share_.paths_in(seconds); }
 
-    /// All of that, in parallel on the calling TBB arena. Returns how many paths that took.
-    std::size_t work(std::size_t most_paths, LightCache::Use use = LightCache::Use::any, std::size_t samples = 0,
-                     double samples_took = 0);
-
 private:
     void refill(LightCache::Use use);
     void follow_check(std::size_t packet);
 
     PathLight const& light_;
-    PathOptions options_;
     LightCache& cache_;
     bool moved_ = false; ///< since the last time that all records were found to be checked
     std::size_t idle_ = 0; ///< times that nothing was wanted
@@ -53,10 +81,10 @@ private:
     std::vector<std::uint32_t> wanted_, unchecked_; ///< records in the order in which they are worked on
     std::size_t next_wanted_ = 0, next_unchecked_ = 0; ///< those before were worked on
     std::vector<std::uint32_t> gathers_, checks_; ///< records of what is planned
-    std::vector<GatheredLight> gathered_; ///< what came of `gathers_`
+    std::vector<GatheredPacket> gathered_; ///< what came of `gathers_`
     LearningShare share_;
     std::atomic<double> took_ = 0; ///< processor seconds of the packets that were followed
-    std::vector<float> first_, checked_; ///< luminance of first paths, of `gathers_` and of `checks_`
+    std::vector<float> checked_; ///< luminance of the first paths of `checks_`
 };
 
 } // namespace framelet

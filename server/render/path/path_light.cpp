@@ -21,35 +21,6 @@ constexpr int telling_paths = 16;
 /// Pixels that a path covers in textures, as a share of the spacing of samples: many are averaged.
 constexpr float path_footprint = 0.25f;
 
-/// Traces path number `path` of each sample of a tile; `add(sample, radiance)` takes what it brings.
-template <class Add>
-void trace_pass(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Tile tile, int path, Add add) {
-    PixelRect const rect = plane.tile_rect(tile);
-    float const spacing = plane.sample_spacing(tile);
-    // In samples of the tile's level, so that with one a pixel these are the numbers of `render_paths`.
-    auto const left = static_cast<std::uint32_t>(static_cast<float>(rect.left) / spacing);
-    auto const top = static_cast<std::uint32_t>(static_cast<float>(rect.top) / spacing);
-    Footprint footprint;
-    footprint.width.fill(glm::length(view.origin_dx) * spacing * path_footprint);
-    footprint.slope.fill(glm::length(view.direction_dx) * spacing * path_footprint);
-    PathNumbers numbers;
-    LaneVec3 radiance;
-    for (int first = 0; first < framelet_samples; first += lanes) {
-        auto const position = [&](int i) {
-            auto const sample = static_cast<std::uint32_t>(first + i);
-            std::uint32_t const x = left + morton_x(sample), y = top + morton_y(sample);
-            numbers.pixel_seed[i] = hashed(hashed(light.options().seed, y), x);
-            numbers.sample[i] = static_cast<std::uint32_t>(path);
-            return (Vec2(x, y) + random_pair(numbers.pixel_seed[i], numbers.sample[i], 0)) * spacing;
-        };
-        RayPacket rays = rays_through(view, position);
-        trace_paths(light.scene(), light.options(), rays, all_lanes, footprint, numbers, radiance);
-        for (int i = 0; i < lanes; ++i) {
-            add(static_cast<std::size_t>(first) + static_cast<std::size_t>(i), radiance.get(i));
-        }
-    }
-}
-
 /// Luminance as a viewer sees it, without rounding, [0, 1].
 float shown_luminance(Vec3 const& radiance, DisplayTransform const& transform) {
     return srgb_from_linear(luminance(transform.shown(radiance)));
@@ -93,31 +64,52 @@ TileSums& PathSums::operator[](Tile tile) {
                      static_cast<std::size_t>(column));
 }
 
-void trace_first_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Framelet& out) {
+void trace_tile(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Tile tile, int path,
+                TileLight& out) {
     FlushDenormals const flush;
-    trace_pass(light, view, plane, out.tile, 0, [&](std::size_t sample, Vec3 const& radiance) {
-        out.red[sample] = radiance.r;
-        out.green[sample] = radiance.g;
-        out.blue[sample] = radiance.b;
-    });
+    PixelRect const rect = plane.tile_rect(tile);
+    float const spacing = plane.sample_spacing(tile);
+    // In samples of the tile's level, so that with one a pixel these are the numbers of `render_paths`.
+    auto const left = static_cast<std::uint32_t>(static_cast<float>(rect.left) / spacing);
+    auto const top = static_cast<std::uint32_t>(static_cast<float>(rect.top) / spacing);
+    Footprint footprint;
+    footprint.width.fill(glm::length(view.origin_dx) * spacing * path_footprint);
+    footprint.slope.fill(glm::length(view.direction_dx) * spacing * path_footprint);
+    PathNumbers numbers;
+    LaneVec3 radiance;
+    for (int first = 0; first < framelet_samples; first += lanes) {
+        auto const position = [&](int i) {
+            auto const sample = static_cast<std::uint32_t>(first + i);
+            std::uint32_t const x = left + morton_x(sample), y = top + morton_y(sample);
+            numbers.pixel_seed[i] = hashed(hashed(light.options().seed, y), x);
+            numbers.sample[i] = static_cast<std::uint32_t>(path);
+            return (Vec2(x, y) + random_pair(numbers.pixel_seed[i], numbers.sample[i], 0)) * spacing;
+        };
+        RayPacket rays = rays_through(view, position);
+        trace_paths(light.scene(), light.options(), rays, all_lanes, footprint, numbers, radiance);
+        for (int i = 0; i < lanes; ++i) {
+            Vec3 const brought = radiance.get(i);
+            auto const sample = static_cast<std::size_t>(first) + static_cast<std::size_t>(i);
+            out.red[sample] = brought.r;
+            out.green[sample] = brought.g;
+            out.blue[sample] = brought.b;
+        }
+    }
 }
 
-void trace_more_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, int paths, TileSums& sums,
-                      Framelet& out) {
-    FlushDenormals const flush;
-    if (sums.paths >= paths) {
-        sums = {};
+void add_path(TileLight const& light, TileSums& sums) {
+    for (std::size_t i = 0; i < framelet_samples; ++i) {
+        sums.red[i] += light.red[i];
+        sums.green[i] += light.green[i];
+        sums.blue[i] += light.blue[i];
+        float const shade = luminance(Vec3(light.red[i], light.green[i], light.blue[i]));
+        sums.squares[i] += shade * shade;
     }
-    for (; sums.paths < paths; ++sums.paths) {
-        trace_pass(light, view, plane, out.tile, sums.paths, [&](std::size_t sample, Vec3 const& radiance) {
-            sums.red[sample] += radiance.r;
-            sums.green[sample] += radiance.g;
-            sums.blue[sample] += radiance.b;
-            float const shade = luminance(radiance);
-            sums.squares[sample] += shade * shade;
-        });
-    }
-    float const share = 1 / static_cast<float>(paths);
+    ++sums.paths;
+}
+
+void set_means(TileSums const& sums, Framelet& out) {
+    float const share = 1 / static_cast<float>(sums.paths);
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         out.red[i] = sums.red[i] * share;
         out.green[i] = sums.green[i] * share;

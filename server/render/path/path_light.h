@@ -66,12 +66,18 @@ private:
     std::vector<TileSums> tiles_; ///< row by row
 };
 
-/// Sets the radiance of the samples of `out.tile` to that of their first paths. `view` is of the plane's viewport.
-void trace_first_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Framelet& out);
-/// Adds paths to the sums of `out.tile`, until there are `paths` of each sample; where there are as many or more they
-/// begin anew. Sets the radiance of the samples to their means.
-void trace_more_paths(PathLight const& light, ViewRays const& view, ImagePlane const& plane, int paths, TileSums& sums,
-                      Framelet& out);
+/// What one path of each sample of a tile brings, in Morton order.
+struct TileLight {
+    std::array<float, framelet_samples> red, green, blue; ///< radiance
+};
+
+/// Traces path number `path` of each sample of a tile. `view` is of the plane's viewport.
+void trace_tile(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Tile tile, int path,
+                TileLight& out);
+/// Adds what the next path of each sample has brought.
+void add_path(TileLight const& light, TileSums& sums);
+/// Sets the radiance of the samples to the means of their paths, of which there are some.
+void set_means(TileSums const& sums, Framelet& out);
 
 /// Mean squared standard error of a sample of the tile, as luminance in the display's encoding, [0, 1]. `exposure`
 /// multiplies radiance. Infinite for fewer paths than tell.

@@ -20,8 +20,9 @@ std::size_t batch_limit(RefreshInput const& input, bool still) {
     double const share = still ? 2 : 0.5; // half a cycle shows sooner
     double const timely =
         share * input.samples_per_second * static_cast<double>(input.cycle_seconds) / framelet_samples;
-    return static_cast<std::size_t>(
-        std::clamp(timely, 1.0, static_cast<double>(std::min(input.link_framelets, max_batch_framelets))));
+    std::size_t const most = std::min(input.link_framelets, max_batch_framelets);
+    double const least = static_cast<double>(std::min(input.least_framelets, most));
+    return static_cast<std::size_t>(std::clamp(timely, least, static_cast<double>(most)));
 }
 
 } // namespace framelet

@@ -35,6 +35,7 @@ struct RefreshInput {
     /// of it while nothing moves.
     std::size_t batch_framelets = 0;
     std::size_t link_framelets = max_batch_framelets; ///< most that the link takes at once
+    std::size_t least_framelets = 1; ///< of a batch, so that all who render have some, whatever there is time for
     ResponseLimits limits{};
     Completion completion{};
 };

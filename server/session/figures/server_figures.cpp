@@ -22,6 +22,8 @@ std::string metrics_text(ServerFigures const& f) {
     add("framelet_viewers_total", "counter", "Viewers that were let in, again each time they came back.", f.viewers);
     add("framelet_scene_loads_total", "counter", "Scenes that were served, one after the other.", f.scenes);
     add("framelet_sent_bytes_total", "counter", "Bytes sent to viewers, before encryption.", f.sent_bytes);
+    add("framelet_workers", "gauge", "Processes that trace paths of light for this one.", f.workers);
+    add("framelet_worker_paths_total", "counter", "Paths of light that these have traced.", f.worker_paths);
     add("framelet_rays_total", "counter", "Rays from cameras that were rendered for viewers.", f.rays);
     add("framelet_rays_per_second", "gauge", "Rays a second that all of the time would be enough for.",
         f.rays_per_second);

@@ -17,6 +17,8 @@ struct ServerFigures {
     std::uint64_t viewers = 0; ///< viewers that were let in
     std::uint64_t scenes = 0; ///< scenes that were served
     std::uint64_t sent_bytes = 0; ///< bytes sent to viewers
+    std::size_t workers = 0; ///< that trace paths for it
+    std::uint64_t worker_paths = 0; ///< paths that they have traced
     double rays = 0; ///< rendered for framelets
     double rays_per_second = 0; ///< rays a second that it would render with all its time, as learnt
     double busy_seconds = 0; ///< seconds in which its loop had something to do

@@ -113,7 +113,7 @@ void SessionLoop::serve_once() {
 
 /// Learns light while no viewer waits for anything; false where all that matters is known.
 bool SessionLoop::learn_light() {
-    bool const learns = scene_.learn_light();
+    bool const learns = scene_.learn_light(options_.stream.workers);
     if (!learns && scene_.light_gathering() != nullptr && !std::exchange(has_learnt_light_, true)) {
         spdlog::info("the light of the scene is learnt");
     }
@@ -223,7 +223,13 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
     double const speed = clock.playing ? double{clock.speed} : 0;
     WallTime const now = std::chrono::steady_clock::now();
     auto const among = static_cast<double>(sharers(viewer)); // a cycle is as long as all their planning asks for
-    Turn const turn{seconds_of(now), clock.time, speed, rate / among, among * plan_seconds_};
+    WorkerPool const* const workers = options_.stream.workers;
+    Turn const turn{seconds_of(now),
+                    clock.time,
+                    speed,
+                    rate / among,
+                    among * plan_seconds_,
+                    workers != nullptr ? workers->chunks_at_once() : 1};
     EventLog* const log = options_.event_log;
     for (StreamEvent const& event : viewer.events) {
         stream.take(event);

@@ -1,0 +1,105 @@
+#include "server/workers/path_round.h"
+
+#include <algorithm>
+#include <utility>
+
+#include <tbb/parallel_for.h>
+
+#include "server/render/path/path_tracing.h"
+#include "server/workers/order_tracing.h"
+
+namespace framelet {
+
+void PathRound::begin(WorkerPool* workers, PathLight const& light, Moment const& moment, std::vector<TilePath> tiles,
+                      LightGathering* gathering, std::size_t packets) {
+    workers_ = workers;
+    path_light_ = &light;
+    gathering_ = gathering;
+    moment_ = moment;
+    tiles_ = std::move(tiles);
+    light_.resize(std::max(light_.size(), tiles_.size()));
+    packets_ = packets;
+    shared_packets_ = 0;
+    chunks_.clear();
+    if (workers_ != nullptr && workers_->workers() > 0) {
+        share();
+    }
+}
+
+void PathRound::share() {
+    std::vector<PathOrder> orders;
+    std::size_t const paths = workers_->paths_a_chunk();
+    auto const split = [&](bool is_of_tiles, std::size_t count, std::size_t at_once) {
+        for (std::size_t first = 0; first < count; first += at_once) {
+            Chunk const chunk{is_of_tiles, first, std::min(at_once, count - first)};
+            PathOrder order;
+            order.scene_time = moment_.scene_time;
+            order.view = moment_.view;
+            order.display = path_light_->scene().scene.display;
+            for (std::size_t i = first; i < first + chunk.count; ++i) {
+                if (is_of_tiles) {
+                    order.tiles.push_back(tiles_[i]);
+                } else {
+                    PlaceGathering const wanted = *gathering_->order(i);
+                    order.places.push_back({wanted.place.frame, wanted.place.position, wanted.place.normal, wanted.seed,
+                                            wanted.first, wanted.bright});
+                }
+            }
+            chunks_.push_back(chunk);
+            orders.push_back(std::move(order));
+        }
+    };
+    split(true, tiles_.size(), std::clamp<std::size_t>(paths / framelet_samples, 1, max_order_tiles));
+    while (shared_packets_ < packets_ && gathering_->order(shared_packets_)) {
+        ++shared_packets_;
+    }
+    split(false, shared_packets_, std::clamp<std::size_t>(paths / lanes, 1, max_order_places));
+    workers_->begin(std::move(orders));
+}
+
+/// Traces one of the tiles, or of the packets, which are numbered behind the tiles.
+void PathRound::trace(std::size_t index) {
+    if (index >= tiles_.size()) {
+        gathering_->follow(index - tiles_.size());
+        return;
+    }
+    NumberedView const& view = moment_.view;
+    trace_tile(*path_light_, make_view_rays(view.camera, view.viewport), ImagePlane(view.viewport), tiles_[index].tile,
+               static_cast<int>(tiles_[index].number), light_[index]);
+}
+
+bool PathRound::take(Chunk const& chunk, PathAnswer const& answer) {
+    if (chunk.is_of_tiles) {
+        return read_tiles(answer, std::span(light_).subspan(chunk.first, chunk.count));
+    }
+    std::vector<GatheredPacket> gathered(chunk.count);
+    if (!read_places(answer, gathered)) {
+        return false;
+    }
+    for (std::size_t i = 0; i < chunk.count; ++i) {
+        gathering_->take_gathered(chunk.first + i, gathered[i]);
+    }
+    return true;
+}
+
+void PathRound::finish() {
+    if (chunks_.empty()) {
+        tbb::parallel_for(std::size_t{0}, tiles_.size() + packets_, [&](std::size_t i) { trace(i); });
+        return;
+    }
+    tbb::parallel_for(tiles_.size() + shared_packets_, tiles_.size() + packets_, [&](std::size_t i) { trace(i); });
+    double const waited = workers_->finish(
+        [&](std::size_t index) {
+            Chunk const& chunk = chunks_[index];
+            std::size_t const first = (chunk.is_of_tiles ? 0 : tiles_.size()) + chunk.first;
+            for (std::size_t i = first; i < first + chunk.count; ++i) {
+                trace(i);
+            }
+        },
+        [&](std::size_t index, PathAnswer const& answer) { return take(chunks_[index], answer); });
+    if (gathering_ != nullptr) {
+        gathering_->note_waited(waited);
+    }
+}
+
+} // namespace framelet
