@@ -136,7 +136,7 @@ struct PlacePaths {
 };
 inline constexpr std::size_t max_order_places = 512; ///< likewise
 
-/// Paths of light that a worker is to trace: of tiles or of places, not of both. Numbers count up.
+/// Paths of light that a worker is to trace: of tiles or of places, not of both.
 struct PathOrder {
     std::uint64_t number = 0;
     std::uint64_t round = 0; ///< number of the first order of its round: older ones are of no use any more

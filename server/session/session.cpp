@@ -389,8 +389,8 @@ void Session::receive_hello(Message const& message) {
         std::scoped_lock const lock(mutex_);
         open_ = true;
         last_progress_ = std::chrono::steady_clock::now();
-        codings_ = hello->codings;
         is_worker_ = hello->work.has_value();
+        codings_ = is_worker_ ? coding::none : hello->codings;
     }
     stream_->send(std::get<Welcome>(std::move(answer)));
     events_.changed();

@@ -19,6 +19,8 @@
 #include "server/session/clock/scene_clock.h"
 #include "server/session/welcome.h"
 #include "server/stream/framelet_stream.h"
+#include "server/workers/order_tracing.h"
+#include "server/workers/worker_pool.h"
 #include "tests/fuzz/session_input.h"
 #include "tests/session/fake_stream.h"
 #include "tests/session/triangle_scenes.h"
@@ -31,6 +33,7 @@ using std::chrono::steady_clock;
 /// Pictures of more pixels are refused, so that one input takes little time.
 constexpr Viewport largest{160, 120};
 constexpr std::size_t places = 2;
+constexpr std::size_t most_open = 32; ///< with those who have no pictures
 constexpr std::size_t most_turns = 64;
 /// Connections over which what is repeated is said.
 constexpr std::size_t repeats = 256;
@@ -109,6 +112,7 @@ public:
 
     void take_turns() {
         now_ += turn_seconds;
+        work();
         std::erase_if(viewers_, [](auto const& entry) { return !entry.second.session->is_served(); });
         for (auto const& session : open_sessions()) {
             if (session->is_ready()) {
@@ -156,6 +160,7 @@ private:
             return fits ? admission_.reserve(id, viewport, predicts) : "too large";
         };
         events.changed = [] {};
+        events.path_answer = [this, id](PathAnswer answer) { workers_.answer(id, std::move(answer)); };
         events.ended = [this, id](std::string const& reason) {
             FRAMELET_CHECK(!reason.empty() && reason.find('\n') == std::string::npos);
             FRAMELET_CHECK(ended_.insert(id).second); // each is told once
@@ -173,7 +178,10 @@ private:
             before->cut();
             remove(before->id());
         }
-        if (open_sessions().size() >= places) {
+        if (hello.work || hello.codings == coding::none) {
+            return admit_without_pictures(id, hello.work.has_value());
+        }
+        if (viewers_here() >= places) {
             return Failure{"the server has its viewers already", true};
         }
         Welcome answer = served_.welcome;
@@ -182,6 +190,46 @@ private:
         FRAMELET_CHECK(answer.ticket && answer.resumed == (answer.ticket == hello.ticket));
         tickets_.push_back(answer.ticket);
         return answer;
+    }
+
+    /// Lets in a worker, or who hears the clock alone.
+    std::variant<Welcome, Failure> admit_without_pictures(std::uint64_t id, bool is_worker) {
+        if (static_cast<std::size_t>(open_sessions().size()) >= most_open) {
+            return Failure{"there are too many", true};
+        }
+        if (is_worker) {
+            auto const session = connections_.at(id).session;
+            workers_.join(id, {1, [session](PathOrder const& order) { session->send(order); },
+                               [session](std::string const& reason) { session->end(reason); }});
+        }
+        return served_.welcome;
+    }
+
+    std::size_t viewers_here() const {
+        auto const open = open_sessions();
+        return static_cast<std::size_t>(
+            std::ranges::count_if(open, [](auto const& session) { return session->has_pictures(); }));
+    }
+
+    /// A round for the workers that are here, which numbers its orders as the rounds before: what is said fits some.
+    void work() {
+        if (workers_.workers() == 0) {
+            return;
+        }
+        std::vector<PathOrder> orders(4);
+        for (PathOrder& order : orders) {
+            order.tiles = {{Tile{1}, 0}};
+        }
+        std::size_t done = 0;
+        std::vector<TileLight> light(1);
+        workers_.begin(orders);
+        workers_.finish([&](std::size_t) { ++done; },
+                        [&](std::size_t, PathAnswer const& answer) {
+                            bool const is_light = read_tiles(answer, light);
+                            done += is_light ? 1 : 0;
+                            return is_light;
+                        });
+        FRAMELET_CHECK(done == orders.size());
     }
 
     /// Replaces a ticket that is a small number by that of the welcome of this number. Nobody could guess it.
@@ -211,6 +259,7 @@ private:
     void remove(std::uint64_t id) {
         auto const node = connections_.extract(id);
         if (!node.empty()) {
+            workers_.leave(id);
             admission_.leave(id, node.mapped().session.get());
             node.mapped().stream->forget_handlers();
             admission_.keep_parked(places);
@@ -282,6 +331,7 @@ private:
     Served& served_;
     Admission::Rules const rules_;
     Admission admission_;
+    WorkerPool workers_;
     SceneClock clock_{true, WallTime{}};
     double now_ = 0;
     std::uint64_t next_id_ = 1, speaker_ = 0;

@@ -314,6 +314,12 @@ void write_sessions(std::filesystem::path const& folder) {
     write_session(folder, "wants", 0,
                   {hello, ViewerSettings{1, 0.5f, true}, camera_update(1), ViewerSettings{-1, 0, false}, clock,
                    Ack{1, 0, 0}, Ack{2, 0, 0}, camera_update(2), Failure{"enough"}});
+    Hello worker{protocol_version, {}, coding::none};
+    worker.work = {1, 2, 3};
+    PathAnswer const light{1, 5, std::vector<float>(3 * framelet_samples, 0.5f)}, none{2, 0, {}};
+    write_session(folder, "works", 0, {worker, light, none, PathAnswer{3, 0, {-1}}, camera_update(1)});
+    write_session(folder, "answers_twice", 0,
+                  {worker, light, {session_input::connects, hello}, camera_update(1), light});
 }
 
 /// Writes what viewers say who come back: the ticket of a number is that of this welcome.

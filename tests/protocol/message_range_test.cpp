@@ -264,6 +264,77 @@ TEST(MessageRange, WhatIsEvictedAddsUp) {
     expect_refused(evicted({1}, {4097}, std::vector<std::uint32_t>(4097, 1)), "4096");
 }
 
+TEST(MessageRange, Orders) {
+    PathOrder tiles;
+    tiles.view.viewport = {64, 48};
+    tiles.tiles.assign(max_order_tiles, {Tile{1}, 7});
+    EXPECT_NO_THROW(decode_message(unchecked(tiles)));
+    auto const refuse = [](PathOrder order, void (*change)(PathOrder&), std::string const& word) {
+        change(order);
+        expect_refused(unchecked(order), word);
+    };
+    refuse(
+        tiles, [](PathOrder& o) { o.scene_time = nan; }, "time");
+    refuse(
+        tiles, [](PathOrder& o) { o.scene_time = -1; }, "time");
+    refuse(
+        tiles, [](PathOrder& o) { o.display.exposure = 0; }, "exposure");
+    refuse(
+        tiles, [](PathOrder& o) { o.display.exposure = infinity; }, "exposure");
+    refuse(
+        tiles, [](PathOrder& o) { o.display.curve = static_cast<ToneCurve>(4); }, "curve");
+    refuse(
+        tiles, [](PathOrder& o) { o.view.viewport.width = 0; }, "viewport");
+    refuse(
+        tiles, [](PathOrder& o) { o.view.camera.position.x = nan; }, "camera");
+    refuse(
+        tiles,
+        [](PathOrder& o) {
+            o.tiles.push_back({Tile{1}, 0});
+        },
+        "more tiles");
+    refuse(
+        tiles, [](PathOrder& o) { o.tiles[3].tile.code = 2; }, "tile");
+    refuse(
+        tiles, [](PathOrder& o) { o.tiles[3].tile = make_tile(6, 0, 0); }, "tile");
+    refuse(
+        tiles, [](PathOrder& o) { o.places.emplace_back(); }, "both");
+
+    PathOrder places;
+    places.places.resize(max_order_places);
+    places.places[1] = {~0u, {-1e10f, 0, 1e10f}, {0, 0, -1}, 1, 2, infinity};
+    EXPECT_NO_THROW(decode_message(unchecked(places)));
+    refuse(
+        places, [](PathOrder& o) { o.places.emplace_back(); }, "places");
+    refuse(
+        places, [](PathOrder& o) { o.places[2].position.y = nan; }, "place");
+    refuse(
+        places, [](PathOrder& o) { o.places[2].position.z = 1.1e10f; }, "place");
+    refuse(
+        places,
+        [](PathOrder& o) {
+            o.places[2].normal = {0, 2, 0};
+        },
+        "place");
+    refuse(
+        places, [](PathOrder& o) { o.places[2].bright = nan; }, "place");
+    refuse(
+        places, [](PathOrder& o) { o.places[2].bright = -1; }, "place");
+}
+
+TEST(MessageRange, Answers) {
+    PathAnswer answer{1, 2, std::vector<float>(max_order_tiles * 3 * framelet_samples)};
+    Bytes const largest = unchecked(answer);
+    EXPECT_NO_THROW(decode_message(largest));
+    EXPECT_LE(largest.size(), max_upstream_message_bytes);
+    answer.light[5] = nan;
+    expect_refused(unchecked(answer), "none");
+    answer.light[5] = -infinity;
+    expect_refused(unchecked(answer), "none");
+    answer.light.assign(max_upstream_message_bytes / sizeof(float), 0);
+    expect_refused(unchecked(answer), "larger");
+}
+
 TEST(MessageRange, UnknownType) {
     for (int const type : {13, 200, 255}) {
         Builder builder;

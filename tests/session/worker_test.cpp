@@ -1,4 +1,6 @@
 // Workers as a server meets them: those that say what nobody asked of them lose their place, others lose nothing.
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "raw_viewer.h"
@@ -51,14 +53,13 @@ TEST_F(WorkerTest, IsAskedAndAnswers) {
     RawViewer worker(server.port(), own.hello());
     auto const first = worker.receive();
     ASSERT_TRUE(first && std::holds_alternative<Welcome>(*first));
-    std::uint64_t last = 0;
+    std::set<std::uint64_t> numbers;
     for (int i = 0; i < 10; ++i) {
         auto const order = next_order(worker);
         ASSERT_TRUE(order);
-        EXPECT_GT(order->number, last);
+        EXPECT_TRUE(numbers.insert(order->number).second);
         EXPECT_LE(order->round, order->number);
         EXPECT_FALSE(order->places.empty());
-        last = order->number;
         worker.send(trace_order(*own.posed.path_light(), *order));
     }
     EXPECT_EQ(server.figures().workers, 1u);
@@ -108,6 +109,16 @@ TEST_F(WorkerTest, AnAnswerThatIsNoLightEndsIt) {
         EXPECT_TRUE(is_ended);
     }
     EXPECT_TRUE(has_workers(0));
+}
+
+TEST_F(WorkerTest, ItIsNoViewerWhateverItSaysItReads) {
+    Hello both = own.hello();
+    both.codings = coding::all;
+    RawViewer worker(server.port(), both);
+    ASSERT_TRUE(next_order(worker));
+    worker.send(CameraUpdate{{1, {}, {64, 48}}});
+    EXPECT_NE(worker.failure(), "");
+    EXPECT_EQ(server.figures().viewers, 0u);
 }
 
 TEST_F(WorkerTest, OfOtherLightItIsTurnedAway) {

@@ -58,12 +58,17 @@ constexpr unsigned spread_rows(unsigned rows) {
     return (rows & 1) | (rows & 2) << 3 | (rows & 4) << 6 | (rows & 8) << 9;
 }
 
-/// Calls `visit` with column, row and covered pixels (as of `Cell`) of each of the `columns` x `rows` cells in which
-/// the box [low, high], pixels, covers centres of pixels.
+/// Rows of cells [first, last).
+struct CellRows {
+    int first = 0, last = 0;
+};
+
+/// Calls `visit` with column, row and covered pixels (as of `Cell`) of each of the cells of these rows, `columns` each,
+/// in which the box [low, high], pixels, covers centres of pixels.
 template <class Visit>
-void for_each_covered(Vec2 low, Vec2 high, int columns, int rows, Visit visit) {
-    low = glm::max(low - 0.5f, Vec2(0));
-    high = glm::min(high + 0.5f, Vec2(columns, rows) * float{cell_side});
+void for_each_covered(Vec2 low, Vec2 high, int columns, CellRows rows, Visit visit) {
+    low = glm::max(low - 0.5f, Vec2(0, rows.first) * float{cell_side});
+    high = glm::min(high + 0.5f, Vec2(columns, rows.last) * float{cell_side});
     int const left = static_cast<int>(std::ceil(low.x));
     int const top = static_cast<int>(std::ceil(low.y));
     int const right = static_cast<int>(high.x);

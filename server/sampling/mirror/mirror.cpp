@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include <tbb/parallel_for.h>
+
 namespace framelet {
 namespace {
 
@@ -72,8 +74,18 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions, bool moves
     looked_ = changes_;
     erase_forgotten();
     for (Moment& moment : moments_) {
-        draw(moment, 0, motions, false);
+        reproject_from(moment, 0, motions);
     }
+    // Each cell shows what all moments have there, one after the other; cells know nothing of each other.
+    int const bands = std::clamp(2 * tbb::this_task_arena::max_concurrency(), 2, 32);
+    int const squares = (rows_ + square_cells - 1) / square_cells; // of which each is of one band
+    tbb::parallel_for(0, bands, [&](int band) {
+        CellRows const rows{squares * band / bands * square_cells,
+                            std::min(squares * (band + 1) / bands * square_cells, rows_)};
+        for (Moment const& moment : moments_) {
+            draw(moment, 0, false, rows);
+        }
+    });
 }
 
 float Mirror::luma_of(Cell const& cell, Vec2 at) const {
@@ -185,7 +197,8 @@ void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece 
     }
     std::size_t const first = moment.pieces.size();
     append(moment, pieces);
-    draw(moment, first, motions, true);
+    reproject_from(moment, first, motions);
+    draw(moment, first, true, {0, rows_});
 }
 
 void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
@@ -316,29 +329,42 @@ PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& mo
     return {moment.rays, target_, size, &motions, moves_samples_};
 }
 
-/// Draws the pieces of a moment, from `first` on, into the cells. `is_new`: they have just come.
-void Mirror::draw(Moment& moment, std::size_t first, BodyMotions const& motions, bool is_new) {
+/// Finds where the pieces of a moment lie in the picture that is looked at, from `first` on.
+void Mirror::reproject_from(Moment& moment, std::size_t first, BodyMotions const& motions) {
+    constexpr std::size_t at_once = 2048;
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
-    moment.reprojected.resize(first);
-    reproject(to_picture(moment, motions), std::span(moment.pieces).subspan(first), shows_outliers(moment), transforms_,
-              moment.reprojected);
+    moment.reprojected.resize(moment.pieces.size());
+    PieceReprojection const reprojection = to_picture(moment, motions);
+    bool const outliers = shows_outliers(moment);
+    transforms_.prepare();
+    std::size_t const blocks = (moment.pieces.size() - first + at_once - 1) / at_once;
+    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
+        std::size_t const begin = first + block * at_once;
+        std::size_t const count = std::min(at_once, moment.pieces.size() - begin);
+        reproject(reprojection, std::span(moment.pieces).subspan(begin, count), outliers, transforms_.local(),
+                  std::span(moment.reprojected).subspan(begin, count));
+    });
+}
+
+/// Draws the pieces of a moment, from `first` on, into the cells of these rows. `is_new`: they have just come.
+void Mirror::draw(Moment const& moment, std::size_t first, bool is_new, CellRows rows) {
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         if (moment.reprojected[i].is_in_picture()) {
             ReprojectedPiece const& piece = moment.reprojected[i];
-            for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows_,
+            for_each_covered(piece.at - piece.half_side, piece.at + piece.half_side, columns_, rows,
                              [&](int column, int row, unsigned mask) { show(moment, i, mask, column, row, is_new); });
         }
     }
     if (&moment == &moments_[base_] && moment.is_of_camera) {
-        cover_from(moment, first);
+        cover_from(moment, first, rows);
     }
     if (!moves_samples_) {
-        expect_from(moment, first);
+        expect_from(moment, first, rows);
     }
 }
 
 /// Marks where what the pieces of a moment show has gone to, which a viewer that moves nothing does not show there.
-void Mirror::expect_from(Moment const& moment, std::size_t first) {
+void Mirror::expect_from(Moment const& moment, std::size_t first, CellRows rows) {
     for (std::size_t i = first; i < moment.pieces.size(); ++i) {
         ReprojectedPiece const& piece = moment.reprojected[i];
         float const way = glm::length(piece.way);
@@ -347,7 +373,7 @@ void Mirror::expect_from(Moment const& moment, std::size_t first) {
         }
         float const stale = std::min(moment.pieces[i].detail * way, lost_error);
         Vec2 const at = piece.at + piece.way;
-        for_each_covered(at - piece.half_side, at + piece.half_side, columns_, rows_,
+        for_each_covered(at - piece.half_side, at + piece.half_side, columns_, rows,
                          [&](int column, int row, unsigned) {
                              Cell& cell = cells_[index_of(column, row)];
                              cell.stale = std::max(cell.stale, stale);
@@ -358,21 +384,22 @@ void Mirror::expect_from(Moment const& moment, std::size_t first) {
 
 /// Covers the cells of those framelets of the base that are where they were rendered: pieces of a square may leave gaps
 /// between each other, its samples do not.
-void Mirror::cover_from(Moment const& moment, std::size_t first) {
+void Mirror::cover_from(Moment const& moment, std::size_t first, CellRows rows) {
     for (std::size_t end = first; first < moment.pieces.size(); first = end) {
         bool is_still = true;
         for (; end < moment.pieces.size() && moment.pieces[end].of == moment.pieces[first].of; ++end) {
             is_still = is_still && (!moment.pieces[end].moves || moment.reprojected[end].is_still);
         }
         for (std::size_t i = first; is_still && i < end; ++i) {
-            cover(moment, i);
+            cover(moment, i, rows);
         }
     }
 }
 
-void Mirror::cover(Moment const& moment, std::size_t index) {
+void Mirror::cover(Moment const& moment, std::size_t index, CellRows rows) {
     PixelRect const part = part_of(moment.pieces[index], ImagePlane(viewport_));
-    for (int row = part.top / cell_side; row < std::min(part.bottom / cell_side, rows_); ++row) {
+    for (int row = std::max(part.top / cell_side, rows.first); row < std::min(part.bottom / cell_side, rows.last);
+         ++row) {
         for (int column = part.left / cell_side; column < std::min(part.right / cell_side, columns_); ++column) {
             Cell& cell = cells_[index_of(column, row)];
             cell.covered = 0xffff;

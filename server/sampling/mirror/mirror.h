@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/held/framelet_pool.h"
+#include "common/per_thread.h"
 #include "server/sampling/mirror/cell.h"
 #include "server/sampling/mirror/piece_reprojection.h"
 
@@ -67,8 +68,8 @@ public:
     /// True when the picture looked at is of this moment.
     bool looks_at(MirrorView const& view) const;
 
-    /// Finds what the viewer shows of `view` as bodies move by `motions`. `moves_samples`: it moves what it holds, from
-    /// and to perspective cameras.
+    /// Finds what the viewer shows of `view` as bodies move by `motions`, in parallel on the calling TBB arena.
+    /// `moves_samples`: it moves what it holds, from and to perspective cameras.
     void look(MirrorView const& view, BodyMotions const& motions, bool moves_samples = true);
     /// Adds pieces of one camera and one scene time that the viewer gets: they are remembered, and shown at once.
     void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
@@ -117,10 +118,11 @@ private:
     Moment& begin_slot(ViewRays const& rays, SceneTime scene_time);
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
-    void draw(Moment& moment, std::size_t first, BodyMotions const& motions, bool is_new);
-    void cover_from(Moment const& moment, std::size_t first);
-    void expect_from(Moment const& moment, std::size_t first);
-    void cover(Moment const& moment, std::size_t index);
+    void reproject_from(Moment& moment, std::size_t first, BodyMotions const& motions);
+    void draw(Moment const& moment, std::size_t first, bool is_new, CellRows rows);
+    void cover_from(Moment const& moment, std::size_t first, CellRows rows);
+    void expect_from(Moment const& moment, std::size_t first, CellRows rows);
+    void cover(Moment const& moment, std::size_t index, CellRows rows);
     void show(Moment const& moment, std::size_t index, unsigned mask, int column, int row, bool is_new);
     void put(Moment const& moment, std::size_t index, float inverse_depth, int share, Cell& cell) const;
     bool is_better(Moment const& moment, ReprojectedPiece const& reprojected, float inverse_depth, int share,
@@ -147,7 +149,7 @@ private:
 
     std::vector<std::uint64_t> newest_batch_; ///< scratch, by cell
     std::vector<Piece> standing_, moving_; ///< scratch
-    BodyTransforms transforms_; ///< scratch
+    PerThread<BodyTransforms> transforms_; ///< scratch
 };
 
 } // namespace framelet

@@ -181,7 +181,7 @@ bool same_camera(ViewRays const& a, ViewRays const& b) {
 }
 
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
-               BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected) {
+               BodyTransforms& transforms, std::span<ReprojectedPiece> reprojected) {
     ++transforms.stamp;
     TimeSpan const valid = reprojection.motions->between_jumps(reprojection.display.scene_time);
     bool const stands = same_camera(reprojection.source, reprojection.display.rays);
@@ -194,13 +194,13 @@ void reproject(PieceReprojection const& reprojection, std::span<Piece const> pie
         }
         auto const age = static_cast<float>(reprojection.display.scene_time - piece.scene_time);
         if (!reprojection.moves_samples) {
-            reprojected.push_back(leave(piece, reprojection, stands));
+            reprojected[i] = leave(piece, reprojection, stands);
         } else if (with_outliers || !piece.is_outlier) {
-            reprojected.push_back(reproject(piece, transform_of(reprojection, piece, transforms), display, age));
+            reprojected[i] = reproject(piece, transform_of(reprojection, piece, transforms), display, age);
         } else {
-            reprojected.emplace_back();
+            reprojected[i] = {};
         }
-        reprojected.back().is_outdated = !valid.contains(piece.scene_time);
+        reprojected[i].is_outdated = !valid.contains(piece.scene_time);
     }
 }
 

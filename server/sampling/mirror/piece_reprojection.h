@@ -67,9 +67,9 @@ struct PieceReprojection {
     bool moves_samples = true; ///< the viewer does, from and to perspective cameras
 };
 
-/// Appends one to `reprojected` for each piece. Not in the picture are outliers unless `with_outliers`, what lies
+/// Sets `reprojected`, one for each piece. Not in the picture are outliers unless `with_outliers`, what lies
 /// outside, and what is too coarse or too uncertain to hide anything.
 void reproject(PieceReprojection const& reprojection, std::span<Piece const> pieces, bool with_outliers,
-               BodyTransforms& transforms, std::vector<ReprojectedPiece>& reprojected);
+               BodyTransforms& transforms, std::span<ReprojectedPiece> reprojected);
 
 } // namespace framelet

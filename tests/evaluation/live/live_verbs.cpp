@@ -103,6 +103,18 @@ void add_replay_options(CLI::App& verb, LiveVerbOptions& options) {
     verb.add_option("RECORDING", options.recording, "What framelet-server --record-events wrote")->required();
 }
 
+void add_scale_options(CLI::App& verb, LiveVerbOptions& options) {
+    ScaleOptions& scale = options.scale;
+    verb.add_option("--scene", scale.scene, "Scene file (default: dusk)");
+    verb.add_option("--size", options.scale_size, "Size of the picture, WIDTHxHEIGHT")->capture_default_str();
+    verb.add_option("--seconds", scale.seconds, "Of each run")->check(number_in(1.0, 3600.0))->capture_default_str();
+    verb.add_option("--workers", scale.workers, "How many, run by run; the first is compared with")
+        ->delimiter(',')
+        ->check(CLI::Range(0, 256))
+        ->capture_default_str();
+    verb.add_option("--charts", scale.charts, "Draw what a cluster comes to into this folder");
+}
+
 void add_soak_options(CLI::App& verb, LiveVerbOptions& options) {
     SoakOptions& soak = options.soak;
     verb.add_option("--scenes,--scene", options.scenes, "Scene files, which share the time (default: vehicle_chase)");
@@ -210,6 +222,14 @@ json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
         runs.push_back(run_soak(*load_bench_scene(file), soak));
     }
     return runs;
+}
+
+json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual) {
+    if (options.scale.scene.empty()) {
+        options.scale.scene = usual;
+    }
+    options.scale.viewport = parse_size(options.scale_size);
+    return measure_scale(options.scale);
 }
 
 json answer_link(LiveVerbOptions& options) {

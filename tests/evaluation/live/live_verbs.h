@@ -10,6 +10,7 @@
 
 #include "tests/evaluation/live/crowd.h"
 #include "tests/evaluation/live/live.h"
+#include "tests/evaluation/live/scale.h"
 #include "tests/evaluation/live/serve.h"
 #include "tests/evaluation/soak/soak.h"
 
@@ -32,6 +33,8 @@ struct LiveVerbOptions {
     std::uint16_t link_to = 0; ///< port of the server behind `link`
     SoakOptions soak;
     std::string soak_size = "320x180";
+    ScaleOptions scale;
+    std::string scale_size = "640x360";
 };
 
 // The options that these functions bind must outlive the parsing.
@@ -41,6 +44,7 @@ void add_serve_options(CLI::App& verb, LiveVerbOptions& options);
 void add_look_options(CLI::App& verb, LiveVerbOptions& options);
 void add_replay_options(CLI::App& verb, LiveVerbOptions& options);
 void add_soak_options(CLI::App& verb, LiveVerbOptions& options);
+void add_scale_options(CLI::App& verb, LiveVerbOptions& options);
 void add_link_verb_options(CLI::App& verb, LiveVerbOptions& options);
 
 nlohmann::json answer_live(LiveVerbOptions& options, std::vector<std::filesystem::path> const& bundled,
@@ -52,6 +56,8 @@ nlohmann::json answer_replay(LiveVerbOptions& options);
 /// Runs `soak` on each scene; several share the time. `usual`: the scene where none is named. Throws ConnectionError
 /// where something has failed.
 nlohmann::json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual);
+/// Measures what workers buy; `usual`: the scene where none is named.
+nlohmann::json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual);
 /// Says at which port an emulated link begins, and lets bytes through until standard input ends.
 nlohmann::json answer_link(LiveVerbOptions& options);
 
