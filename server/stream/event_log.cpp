@@ -18,7 +18,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "numbers are copied as they are");
 
-constexpr char const* first_line = "framelet events 5";
+constexpr char const* first_line = "framelet events 6";
 
 enum Kind : std::uint8_t {
     viewer = 1,
@@ -191,8 +191,8 @@ void EventLog::add_event(std::uint64_t session, StreamEvent const& event) {
 
 void EventLog::add_turn(std::uint64_t session, Turn const& given, Step step) {
     Bytes content;
-    for (double const number :
-         {given.now, given.present, given.clock_speed, given.samples_per_second, given.plan_seconds}) {
+    for (double const number : {given.now, given.present, given.clock_speed, given.samples_per_second,
+                                given.plan_seconds, given.pose_seconds}) {
         put(content, number);
     }
     put(content, given.busy_framelets);
@@ -279,8 +279,8 @@ std::optional<LogRecord> EventLogReader::next() {
         return event([&] { return Resumed{content.take<std::uint64_t>()}; });
     case turn: {
         Turn given;
-        for (double* const number :
-             {&given.now, &given.present, &given.clock_speed, &given.samples_per_second, &given.plan_seconds}) {
+        for (double* const number : {&given.now, &given.present, &given.clock_speed, &given.samples_per_second,
+                                     &given.plan_seconds, &given.pose_seconds}) {
             *number = content.take<double>();
         }
         given.busy_framelets = content.take<std::uint64_t>();

@@ -1,7 +1,7 @@
 // A session as a file: what came to its stream and when, which turns it was given, and what it answered. In: the calls
 // that a loop makes. Out: the same, to be made again (`replay.h`).
 //
-// The file: "framelet events 5\n", a line of JSON that says what was served, then records: a byte for the kind, the
+// The file: "framelet events 6\n", a line of JSON that says what was served, then records: a byte for the kind, the
 // session's number (8 bytes), the length of what follows (4), and that. Numbers are little-endian, times doubles; what
 // a viewer says and batches are message bodies as on the wire.
 #pragma once

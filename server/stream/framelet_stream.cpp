@@ -193,12 +193,12 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
     Camera const now = camera_in(0, turn, scene);
     Camera const then = camera_in(least_moment_seconds, turn, scene);
     if (!moves_samples_) { // what comes shows at once, as it is, until something else comes
-        double const seconds = 0.5 * moments_.standing_seconds();
+        double const seconds = worth_posing(0.5 * moments_.standing_seconds(), turn.pose_seconds);
         double const ahead = options_.looks_ahead ? seconds : 0;
         return {state_at(time_in(ahead, turn), scene), turn.now, seconds, 0, false};
     }
     bool const camera_moves = then != now;
-    double const seconds = new_moment_seconds(camera_moves, turn, scene);
+    double const seconds = worth_posing(new_moment_seconds(camera_moves, turn, scene), turn.pose_seconds);
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds + travel_seconds() : 0;
     double camera_ahead = scene_ahead + camera_lead(now, then, turn, scene);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;

@@ -12,6 +12,14 @@ double moment_seconds(double samples_per_pixel_and_second) {
     return std::ldexp(least_moment_seconds, static_cast<int>(std::lround(std::log2(wanted / least_moment_seconds))));
 }
 
+double worth_posing(double seconds, double pose_seconds) {
+    constexpr double least_share = 4, most_seconds = 3.2;
+    while (seconds < least_share * pose_seconds && seconds < most_seconds) {
+        seconds *= 2;
+    }
+    return seconds;
+}
+
 void MomentChoice::begin(HeldMoment const& moment) {
     if (held_ && completed_ && *completed_ - held_->begun < 0.5 * held_->seconds) {
         standing_seconds_ = std::max(0.5 * standing_seconds_, least_standing_seconds);

@@ -17,6 +17,10 @@ inline constexpr double least_moment_seconds = 0.1, most_moment_seconds = 0.4;
 /// the least length and its doubles, so that viewers who get different shares change together all the same.
 double moment_seconds(double samples_per_pixel_and_second);
 
+/// How long a moment lasts, seconds, that is to last so long, where it takes `pose_seconds` to begin it: longer, by
+/// doubling, where less than three quarters of that would be left for rendering it.
+double worth_posing(double seconds, double pose_seconds);
+
 /// How long a moment lasts at least before a camera that stands, seconds, where there is time for so many.
 inline constexpr double least_standing_seconds = 0.05;
 

@@ -116,9 +116,9 @@ ScenePose const& PosedScene::pose_of(SceneTime time) {
     return poses_.pose().time == time ? poses_.pose() : poses_.at(time);
 }
 
-void PosedScene::pose(SceneTime time) {
+bool PosedScene::pose(SceneTime time) {
     if (rendered_ == time) {
-        return;
+        return false;
     }
     try {
         ScenePose const& wanted = pose_of(time);
@@ -134,6 +134,7 @@ void PosedScene::pose(SceneTime time) {
         throw SceneUnposed();
     }
     rendered_ = time;
+    return true;
 }
 
 Camera PosedScene::camera(Index index, SceneTime time) {

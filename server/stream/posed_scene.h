@@ -52,9 +52,9 @@ public:
     /// scene, to the last bit, and hardly ever for another. 0 where light is direct.
     std::uint64_t light_identity() const { return light_identity_; }
 
-    /// Moves everything that is rendered to where it is at `time`; nothing where it is there already. Throws
-    /// SceneUnposed where it cannot; until it can, nothing is to be rendered.
-    void pose(SceneTime time);
+    /// Moves everything that is rendered to where it is at `time`; false where it is there already. Throws SceneUnposed
+    /// where it cannot; until it can, nothing is to be rendered.
+    bool pose(SceneTime time);
     /// The pose of everything at `time`; valid until the next call. The renderer's scene stays as it is.
     ScenePose const& pose_of(SceneTime time);
     /// Evaluates its poses: what `pose_of` gave is gone with the next one.

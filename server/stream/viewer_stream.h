@@ -23,6 +23,8 @@ struct Turn {
     double clock_speed = 0; ///< of the scene's clock, scene seconds a second; 0 while it is paused
     double samples_per_second = 0; ///< that the renderer has for this viewer
     double plan_seconds = 0; ///< what planning a cycle takes, for all viewers that share the time
+    /// What it takes to begin another moment, for all viewers likewise: to move the scene, and to tell of its bodies.
+    double pose_seconds = 0;
     std::uint64_t busy_framelets = 1; ///< so many of a batch give work to all who render it, workers too
     bool operator==(Turn const&) const = default;
 };

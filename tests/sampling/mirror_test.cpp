@@ -1,9 +1,12 @@
 #include "server/sampling/mirror/mirror.h"
 
+#include <array>
 #include <limits>
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+#include <tbb/task_arena.h>
 
 #include "common/framelet/sample_worth.h"
 #include "tests/sampling/mirror_views.h"
@@ -315,6 +318,42 @@ TEST(Mirror, OfOneCameraTheNewestIsHeld) {
     EXPECT_NEAR(summary_of(mirror).worn, 2, 1e-3);
     EXPECT_EQ(summary_of(mirror).holes, 0);
     EXPECT_TRUE(mirror.gives_way(mirror.cell(3, 3)));
+}
+
+/// Whoever takes part in a look.
+TEST(Mirror, LooksTheSameOnAnyNumberOfThreads) {
+    auto const cells_by = [](std::size_t threads) {
+        tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
+        tbb::task_arena arena(static_cast<int>(threads));
+        Mirror mirror(viewport);
+        arena.execute([&] {
+            for (int i = 0; i < 4; ++i) {
+                auto const time = static_cast<double>(i);
+                MirrorView const view = view_at(Vec3(0.1f * static_cast<float>(i), 0, 0), time);
+                mirror.look(view, no_motions);
+                std::vector<Piece> pieces =
+                    render_pieces(plane, plane.pixel_depth() + 1 - i, wall, time, static_cast<std::uint64_t>(i + 1));
+                for (std::size_t k = 0; k < pieces.size(); k += 3) {
+                    pieces[k].drift.velocity = Vec3(0.3f, 0, 0);
+                    pieces[k].moves = true;
+                }
+                mirror.add(view.rays, no_motions, pieces);
+            }
+            mirror.look(view_at(Vec3(0.35f, 0.05f, 0.1f), 3.2), no_motions);
+        });
+        std::vector<std::array<float, 5>> cells;
+        for (int row = 0; row < mirror.rows(); ++row) {
+            for (int column = 0; column < mirror.columns(); ++column) {
+                Cell const& cell = mirror.cell(column, row);
+                cells.push_back({cell.inverse_depth, cell.worn, static_cast<float>(cell.piece),
+                                 static_cast<float>(cell.moment), static_cast<float>(cell.covered)});
+            }
+        }
+        return cells;
+    };
+    auto const alone = cells_by(1);
+    EXPECT_EQ(cells_by(3), alone);
+    EXPECT_EQ(cells_by(8), alone);
 }
 
 TEST(Mirror, KeepsTheNewestMoments) {

@@ -85,6 +85,44 @@ TEST(Deform, CollapsedJointsLeaveFiniteUnitNormals) {
     EXPECT_NEAR(glm::length(Vec3(out.tangents[1])), 1, 1e-5f);
 }
 
+/// Many vertices of four joints, with targets.
+TEST(Deform, PositionsAloneAreTheSame) {
+    Scene scene;
+    scene.nodes.resize(4);
+    Skin skin;
+    for (Index j = 0; j < 4; ++j) {
+        auto const x = static_cast<float>(j);
+        scene.nodes[static_cast<std::size_t>(j)].local = {
+            {x, 1, -x}, glm::angleAxis(0.4f * x, Vec3(0, 0, 1)), {1, 1 + 0.2f * x, 1}};
+        skin.joints.push_back(j);
+        skin.inverse_bind_matrices.emplace_back(1);
+    }
+    Primitive primitive;
+    primitive.morph_targets.resize(2);
+    for (int i = 0; i < 5000; ++i) {
+        auto const x = static_cast<float>(i) * 0.001f;
+        auto const part = static_cast<float>(i % 4) * 0.25f;
+        primitive.positions.emplace_back(x, 1 - x, std::sin(x));
+        primitive.normals.emplace_back(0, 1, 0);
+        primitive.influences.push_back({{0, 1, 2, 3}, {1 - part, part * 0.5f, part * 0.3f, part * 0.2f}});
+        primitive.morph_targets[1].positions.emplace_back(0, x, 0);
+    }
+    std::vector<float> const weights{0.7f, -0.3f};
+    ScenePose const pose = evaluate_pose(scene, {}, 0);
+    for (Skin const* const of : {static_cast<Skin const*>(nullptr), static_cast<Skin const*>(&skin)}) {
+        DeformedVertices whole;
+        deform(primitive, weights, of, pose, whole);
+        std::vector<Vec3> positions(primitive.positions.size());
+        std::vector<Mat4> joints;
+        Mat3 const linear(0, 2, 0, 1, 0, 0, 0, 0, 3);
+        deform_positions(primitive, weights, of, pose, linear, {5, 6, 7}, joints, positions);
+        for (std::size_t i = 0; i < positions.size(); ++i) {
+            Vec3 const wanted = linear * whole.positions[i] + Vec3(5, 6, 7);
+            ASSERT_LT(glm::distance(positions[i], wanted), 1e-4f) << i;
+        }
+    }
+}
+
 TEST(Deform, ReusedMemoryDoesNotMove) {
     Primitive primitive = triangle();
     primitive.morph_targets.push_back({{{0, 0, 2}, {0, 0, 0}, {0, 0, 0}}, {}, {}});

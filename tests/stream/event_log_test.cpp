@@ -35,7 +35,7 @@ TEST(EventLog, GivesBackWhatWasAdded) {
     batch.number = 4;
     batch.moment->view = camera.view;
     batch.payload = Bytes(5);
-    Turn const turn{1.5, 2.5, -0.5, 3e6, 1e-4, 7};
+    Turn const turn{1.5, 2.5, -0.5, 3e6, 1e-4, 0.25, 7};
     std::vector<StreamEvent> const events{
         {0.1, camera},         {0.2, ViewerSettings{1.5f, -0.25f, false}},
         {0.3, Ack{9, 8, 7}},   {0.4, Evicted{{{4, Tile{5}}, {4, Tile{21}}, {6, Tile{5}}}}},

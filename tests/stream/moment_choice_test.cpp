@@ -50,6 +50,14 @@ TEST(MomentChoice, TheMoreIsRenderedTheSoonerAMomentEnds) {
     }
 }
 
+TEST(MomentChoice, WhatTakesLongToBeginLastsLonger) {
+    EXPECT_EQ(worth_posing(0.1, 0), 0.1);
+    EXPECT_EQ(worth_posing(0.1, 0.02), 0.1) << "a fifth of it";
+    EXPECT_EQ(worth_posing(0.1, 0.03), 0.2);
+    EXPECT_EQ(worth_posing(0.05, 0.15), 0.8);
+    EXPECT_LE(worth_posing(0.4, 1e9), 4) << "something is to be seen at last";
+}
+
 TEST(MomentChoice, WhereAMomentIsSoonCompleteTheNextAreShorter) {
     MomentChoice moments;
     EXPECT_EQ(moments.standing_seconds(), least_moment_seconds);

@@ -4,6 +4,7 @@
 
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <tbb/parallel_for.h>
 
 #include "server/render/prepared/prepared_scene.h"
 #include "server/render/prepared/render_scene.h"
@@ -91,11 +92,11 @@ void RenderScene::update_motion() {
         if (scene_.lights.empty()) {
             times.lights[k] = prepared_->lights;
         }
-        for (Placement const& placement : placements_) {
-            if (prepared_->instances[placement.instance].moves()) {
-                place_elsewhen(placement, k, other);
+        tbb::parallel_for(std::size_t{0}, placements_.size(), [&](std::size_t i) {
+            if (prepared_->instances[placements_[i].instance].moves()) {
+                place_elsewhen(placements_[i], k, other);
             }
-        }
+        });
     }
     prepared_->throws_moving_shadows = false;
     for (Placement const& placement : placements_) {
@@ -146,9 +147,10 @@ void RenderScene::deform_elsewhen(Placement const& placement, std::size_t time, 
     for (std::size_t i = 0; i < geometries.size(); ++i) {
         Geometry& geometry = geometries[i];
         std::vector<Vec3>& positions = deformed_motion_[placement.deformed][i].elsewhen[time];
-        deform(*geometry.source, other.morph_weights[placement.node], placement.skin, other, elsewhen_);
         positions.resize(geometry.positions.size());
-        std::ranges::transform(elsewhen_.positions, positions.begin(), [&](Vec3 const& x) { return placed.of(x); });
+        std::vector<Mat4> joints; // scratch of its own: while it waits for others a thread takes other meshes
+        deform_positions(*geometry.source, other.morph_weights[placement.node], placement.skin, other, placed.linear,
+                         placed.translation, joints, positions);
         geometry.elsewhen[time] = positions;
     }
 }

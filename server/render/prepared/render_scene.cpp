@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 #include <glm/gtc/matrix_inverse.hpp>
 #include <glm/matrix.hpp>
+#include <tbb/parallel_for.h>
 
 #include "common/error.h"
 #include "server/render/flush_denormals.h"
@@ -242,8 +243,8 @@ void RenderScene::set_pose(ScenePose const& pose) {
     is_placed_ = false;
     pose_ = pose;
     update_lights();
+    tbb::parallel_for(std::size_t{0}, reshape.size(), [&](std::size_t i) { deform_mesh(*reshape[i]); });
     for (Placement const* placement : reshape) {
-        deform_mesh(*placement);
         set_transform(*placement); // its box has changed
     }
     for (Placement const* placement : move) {

@@ -95,7 +95,6 @@ private:
         std::vector<BodyNumber> bodies;
     };
     std::vector<std::vector<DeformedMotion>> deformed_motion_;
-    DeformedVertices elsewhen_; ///< scratch
 };
 
 } // namespace framelet

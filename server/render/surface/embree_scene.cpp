@@ -1,5 +1,6 @@
 #include "server/render/surface/embree_scene.h"
 
+#include <atomic>
 #include <cstring>
 #include <new>
 #include <vector>
@@ -74,7 +75,8 @@ struct EmbreeScene::Handles {
     /// instances takes milliseconds, tracing a second small one nanoseconds.
     Level still, moving;
     bool settled = false; ///< committed once: what is placed again from now on moves
-    bool broken = false; ///< memory was missing: Embree may have left half of something, and is not asked again
+    std::atomic<bool> broken =
+        false; ///< memory was missing: Embree may have left half of something, and is not asked again
 
     TopLevels levels() const { return {still.scene, moving.count > 0 ? moving.scene : nullptr, sixteen_wide}; }
     Level& level_of(InstanceHandle const& instance) { return instance.moves ? moving : still; }

@@ -57,6 +57,14 @@ Vec3 transform_normal(Mat4 const& m, Vec3 const& n, float determinant_sign) {
     return unit_or(result * determinant_sign, n);
 }
 
+void find_joints(Skin const& skin, ScenePose const& pose, std::vector<Mat4>& joints) {
+    joints.clear();
+    for (std::size_t j = 0; j < skin.joints.size(); ++j) {
+        joints.push_back(pose.world_from_node[static_cast<std::size_t>(skin.joints[j])] *
+                         skin.inverse_bind_matrices[j]);
+    }
+}
+
 void skin_vertices(Primitive const& primitive, std::span<Mat4 const> joints, std::size_t first, std::size_t last,
                    DeformedVertices& out) {
     for (std::size_t i = first; i < last; ++i) {
@@ -93,13 +101,9 @@ void deform(Primitive const& primitive, std::span<float const> morph_weights, Sk
     out.positions.resize(count);
     out.normals.resize(count);
     out.tangents.resize(primitive.tangents.size());
-    out.joint_matrices.clear();
     if (skin) {
         FRAMELET_CHECK(primitive.influences.size() == count);
-        for (std::size_t j = 0; j < skin->joints.size(); ++j) {
-            out.joint_matrices.push_back(pose.world_from_node[static_cast<std::size_t>(skin->joints[j])] *
-                                         skin->inverse_bind_matrices[j]);
-        }
+        find_joints(*skin, pose, out.joint_matrices);
     }
     tbb::parallel_for(std::size_t(0), (count + grain - 1) / grain, [&](std::size_t block) {
         std::size_t const first = block * grain;
@@ -117,6 +121,40 @@ void deform(Primitive const& primitive, std::span<float const> morph_weights, Sk
             skin_vertices(primitive, out.joint_matrices, first, last, out);
         }
         square_tangents(first, last, out);
+    });
+}
+
+void deform_positions(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin,
+                      ScenePose const& pose, Mat3 const& linear, Vec3 const& translation,
+                      std::vector<Mat4>& joint_matrices, std::span<Vec3> out) {
+    FRAMELET_CHECK(out.size() == primitive.positions.size() &&
+                   (!skin || primitive.influences.size() == primitive.positions.size()));
+    if (skin) {
+        find_joints(*skin, pose, joint_matrices);
+    }
+    std::size_t const targets = std::min(morph_weights.size(), primitive.morph_targets.size());
+    tbb::parallel_for(std::size_t(0), (out.size() + grain - 1) / grain, [&](std::size_t block) {
+        std::size_t const first = block * grain;
+        std::size_t const last = std::min(first + grain, out.size());
+        std::copy_n(primitive.positions.data() + first, last - first, out.data() + first);
+        for (std::size_t t = 0; t < targets; ++t) {
+            std::vector<Vec3> const& offsets = primitive.morph_targets[t].positions;
+            for (std::size_t i = first; i < last && morph_weights[t] != 0 && !offsets.empty(); ++i) {
+                out[i] += morph_weights[t] * offsets[i];
+            }
+        }
+        for (std::size_t i = first; i < last; ++i) {
+            Vec3 position = out[i];
+            if (skin) {
+                JointInfluence const& influence = primitive.influences[i];
+                Vec4 const at(position, 1);
+                position = influence.weights[0] * Vec3(joint_matrices[influence.joints[0]] * at);
+                for (std::size_t k = 1; k < 4 && influence.weights[k] > 0; ++k) { // the strongest come first
+                    position += influence.weights[k] * Vec3(joint_matrices[influence.joints[k]] * at);
+                }
+            }
+            out[i] = linear * position + translation;
+        }
     });
 }
 

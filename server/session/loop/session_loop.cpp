@@ -120,10 +120,11 @@ bool SessionLoop::learn_light() {
     return learns;
 }
 
-/// Poses the scene, and notes whether there was memory for that.
-void SessionLoop::pose_scene(SceneTime time) {
+/// Poses the scene, and notes whether there was memory for that. False where it was posed so.
+bool SessionLoop::pose_scene(SceneTime time) {
+    bool has_moved = false;
     try {
-        scene_.pose(time);
+        has_moved = scene_.pose(time);
     } catch (SceneUnposed const& failure) {
         if (has_scene_.exchange(false)) {
             spdlog::warn("{}; it is built again as soon as there is enough", failure.what());
@@ -133,6 +134,7 @@ void SessionLoop::pose_scene(SceneTime time) {
     if (!has_scene_.exchange(true)) {
         spdlog::info("the scene has been built again");
     }
+    return has_moved;
 }
 
 /// Tries to build the scene again though nobody has a turn: nobody may come to a server that says it is not well.
@@ -229,6 +231,7 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
                     speed,
                     rate / among,
                     among * plan_seconds_,
+                    among * pose_seconds_,
                     workers != nullptr ? workers->chunks_at_once() : 1};
     EventLog* const log = options_.event_log;
     for (StreamEvent const& event : viewer.events) {
@@ -262,7 +265,8 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
         constexpr double weight = 0.1;
         plan_seconds_ += weight * (planning - plan_seconds_);
     }
-    pose_scene(stream.moment());
+    bool const begins = pose_scene(stream.moment());
+    double const posing = laps.lap();
     if (pipeline_->is_unlearnt()) {
         start_finishing();
     }
@@ -275,16 +279,26 @@ bool SessionLoop::give_turn(std::shared_ptr<Session> const& session, Viewer& vie
         start_finishing();
     }
     double const learning = laps.lap(); // by itself
-    note_rate(figures, rendering + learning);
+    note_rate(figures, rendering + learning, begins ? std::optional(posing) : std::nullopt);
     return true;
 }
 
 /// Notes how long rendering took, with planning left out: that takes as long for few samples, which would then seem to
-/// be dear. So would those of one viewer's small batch that was interrupted: what a round rendered counts together.
-void SessionLoop::note_rate(TurnFigures const& figures, double seconds) {
-    if (figures.rays > 0) {
-        rays_ = rays_ + static_cast<double>(figures.rays);
-        round_.samples += static_cast<double>(figures.rays);
+/// be dear. So would those of one viewer's small batch that was interrupted: what a round rendered counts together. So
+/// would the first ones of a moment, of which `posing`, seconds, was a part, and bodies by the thousand are told with
+/// them: they count as at most twice as dear as others.
+void SessionLoop::note_rate(TurnFigures const& figures, double seconds, std::optional<double> posing) {
+    constexpr double weight = 0.2, most_of_first = 2;
+    auto const rays = static_cast<double>(figures.rays);
+    rays_ = rays_ + rays;
+    if (posing) {
+        seconds += *posing;
+        double const usual = rate_.samples_per_second > 0 ? rays / rate_.samples_per_second : seconds;
+        pose_seconds_ += weight * (std::max(seconds - usual, *posing) - pose_seconds_);
+        seconds = std::min(seconds, most_of_first * usual);
+    }
+    if (rays > 0) {
+        round_.samples += rays;
         round_.seconds += seconds;
     }
 }

@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <vector>
 
 #include "server/sampling/plan/render_rate.h"
@@ -66,7 +67,7 @@ private:
 
     void serve_once();
     bool learn_light();
-    void pose_scene(SceneTime time);
+    bool pose_scene(SceneTime time);
     void try_for_scene(WallTime now);
     bool give_turns(Sessions const& sessions, WallTime now);
     bool give_turn(std::shared_ptr<Session> const& session, Viewer& viewer, WallTime round_began);
@@ -74,7 +75,7 @@ private:
     Viewer& viewer_of(std::shared_ptr<Session> const& session);
     std::unique_ptr<Viewer> new_viewer(std::shared_ptr<Session> const& session) const;
     std::unique_ptr<Viewer> take_up(Session& session, std::shared_ptr<Session> const& earlier);
-    void note_rate(TurnFigures const& figures, double seconds);
+    void note_rate(TurnFigures const& figures, double seconds, std::optional<double> posing);
     void start_finishing();
     void finish_one(bool learns);
     void wait_for_finishing();
@@ -93,6 +94,7 @@ private:
         double samples = 0, seconds = 0;
     } round_; ///< what was rendered since the rate was learnt last, and how long that took
     double plan_seconds_ = 0; ///< how long planning a cycle takes, about
+    double pose_seconds_ = 0; ///< how long it takes to begin a moment, as `Turn::pose_seconds`
     bool waits_for_room_ = false; ///< a viewer's stream waits, in this round
     bool has_learnt_light_ = false; ///< once there was no more to learn
     std::unique_ptr<Pipeline> pipeline_;
