@@ -40,6 +40,8 @@ public:
     Time::duration delay(std::string const& source, Time now) const { return guesses_.delay(source, now); }
     /// Reason why a viewer that says this is not let in; nothing: it may be. A wrong token is noted.
     std::optional<Failure> refusal(Hello const& hello, std::string const& source, Time now);
+    /// False where it takes the control token to be a worker, whose light all viewers see, and this is not said.
+    bool may_work(Hello const& hello) const { return rules_.control_token.empty() || knows_control_token(hello); }
     /// The session of the viewer that says it comes back, where the server has not noticed yet that it had gone.
     std::shared_ptr<Session> session_left_behind(Hello const& hello);
     /// Gives a session that is let in what its viewer had, if that is still there, or a ticket of its own. Who hears

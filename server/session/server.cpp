@@ -261,7 +261,7 @@ struct Server::Impl {
             remove(before->id(), "it has come back by another connection");
         }
         if (hello.work) {
-            return admit_worker(id, *hello.work);
+            return admit_worker(id, hello);
         }
         if (hello.codings == coding::none) {
             return admit_follower(id, hello);
@@ -294,7 +294,11 @@ struct Server::Impl {
     }
 
     /// Lets in who traces paths for this server.
-    std::variant<Welcome, Failure> admit_worker(std::uint64_t id, WorkOffer const& offer) {
+    std::variant<Welcome, Failure> admit_worker(std::uint64_t id, Hello const& hello) {
+        WorkOffer const& offer = *hello.work;
+        if (!admission.may_work(hello)) {
+            return Failure{"a worker has to know the control token of this server"};
+        }
         if (light == 0) {
             return Failure{"there is no work: the light of the scene is direct here, and quickly found"};
         }

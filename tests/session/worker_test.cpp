@@ -129,6 +129,20 @@ TEST_F(WorkerTest, OfOtherLightItIsTurnedAway) {
     EXPECT_NE(RawViewer(direct.port(), own.hello()).failure(), "");
 }
 
+TEST(Worker, HasToKnowTheControlToken) {
+    ServerOptions options;
+    options.token = "a token for those who look";
+    options.control_token = "a token for those who may do more";
+    WorkScene const own;
+    RunningServer const server(options, moving_scene(), by_cache);
+    Hello hello = own.hello();
+    hello.token = options.token;
+    EXPECT_NE(RawViewer(server.port(), hello).failure().find("control token"), std::string::npos);
+    hello.token = options.control_token;
+    auto const first = RawViewer(server.port(), hello).receive();
+    EXPECT_TRUE(first && std::holds_alternative<Welcome>(*first));
+}
+
 /// Who does not answer at all is asked for no more than it has, and nobody waits for it.
 TEST_F(WorkerTest, WhoIsSilentCostsNothing) {
     RawViewer silent(server.port(), own.hello());
