@@ -104,11 +104,7 @@ std::size_t BatchWork::begin_paths(PosedScene const& scene, PathSums& sums, Work
         first_path_[i] = paths.size();
         Tile const tile = order.plan.tiles[i];
         if (most > single_ray) {
-            TileSums& before = sums[tile];
-            if (before.paths >= most) { // they begin anew
-                before = {};
-            }
-            for (int path = before.paths; path < most; ++path) {
+            for (int path = first_to_add(sums[tile], most); path < most; ++path) {
                 paths.push_back({tile, static_cast<std::uint32_t>(path)});
             }
         } else if (gathering == nullptr) {

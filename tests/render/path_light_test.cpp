@@ -57,8 +57,8 @@ Traced traced(LitBall const& ball, std::vector<int> const& steps) {
         framelet.tile = tile;
         for (int const paths : steps) {
             TileLight brought;
-            while (sums[tile].paths < paths) {
-                trace_tile(light, view, plane, tile, sums[tile].paths, brought);
+            for (int path = first_to_add(sums[tile], paths); path < paths; ++path) {
+                trace_tile(light, view, plane, tile, path, brought);
                 add_path(brought, sums[tile]);
             }
             set_means(sums[tile], framelet);

@@ -1,5 +1,7 @@
 // Workers as a server meets them: those that say what nobody asked of them lose their place, others lose nothing.
+#include <atomic>
 #include <set>
+#include <thread>
 
 #include <gtest/gtest.h>
 
@@ -11,7 +13,7 @@
 namespace framelet {
 namespace {
 
-LightOptions const by_cache{LightMethod::full, 0.53f, 0.1f}, by_paths{LightMethod::reference, 0.53f, 0.1f};
+LightOptions const by_paths{LightMethod::reference, 0.53f, 0.1f};
 
 /// A worker's own scene.
 struct WorkScene {
@@ -26,9 +28,15 @@ struct WorkScene {
     }
 };
 
-/// Whose server has light to gather, while nobody looks.
+/// Whose server has paths to trace for as long as the test takes: somebody looks at what moves.
 class WorkerTest : public testing::Test {
 protected:
+    WorkerTest() {
+        viewer_.send(CameraUpdate{{1, {}, {64, 48}}});
+        looking_ = std::jthread([this] { viewer_.watch([this](Message const&) { return is_over_.load(); }); });
+    }
+    ~WorkerTest() override { is_over_ = true; }
+
     static std::optional<PathOrder> next_order(RawViewer& worker) {
         std::optional<PathOrder> order;
         worker.watch([&](Message const& message) {
@@ -46,7 +54,12 @@ protected:
     }
 
     WorkScene own;
-    RunningServer server{{}, moving_scene(), by_cache};
+    RunningServer server{{}, moving_scene(), by_paths};
+
+private:
+    std::atomic<bool> is_over_ = false;
+    RawViewer viewer_{server.port()};
+    std::jthread looking_; ///< ends with the next message, once it is over
 };
 
 TEST_F(WorkerTest, IsAskedAndAnswers) {
@@ -59,12 +72,12 @@ TEST_F(WorkerTest, IsAskedAndAnswers) {
         ASSERT_TRUE(order);
         EXPECT_TRUE(numbers.insert(order->number).second);
         EXPECT_LE(order->round, order->number);
-        EXPECT_FALSE(order->places.empty());
+        EXPECT_FALSE(order->tiles.empty());
         worker.send(trace_order(*own.posed.path_light(), *order));
     }
     EXPECT_EQ(server.figures().workers, 1u);
-    EXPECT_EQ(server.figures().sessions, 0u) << "a worker is no viewer";
-    EXPECT_EQ(server.figures().viewers, 0u);
+    EXPECT_EQ(server.figures().sessions, 1u) << "a worker is no viewer";
+    EXPECT_EQ(server.figures().viewers, 1u);
 }
 
 TEST_F(WorkerTest, WhoAnswersTwiceOrLiesLosesItsPlaceAlone) {
@@ -102,7 +115,7 @@ TEST_F(WorkerTest, AnAnswerThatIsNoLightEndsIt) {
             is_ended = !order;
             if (order) {
                 PathAnswer answer{order->number, 0, {}};
-                answer.light.assign(order->places.size() * sizeof(GatheredPacket) / sizeof(float), wrong);
+                answer.light.assign(order->tiles.size() * sizeof(TileLight) / sizeof(float), wrong);
                 hostile.send(answer);
             }
         }
@@ -118,7 +131,7 @@ TEST_F(WorkerTest, ItIsNoViewerWhateverItSaysItReads) {
     ASSERT_TRUE(next_order(worker));
     worker.send(CameraUpdate{{1, {}, {64, 48}}});
     EXPECT_NE(worker.failure(), "");
-    EXPECT_EQ(server.figures().viewers, 0u);
+    EXPECT_EQ(server.figures().viewers, 1u);
 }
 
 TEST_F(WorkerTest, OfOtherLightItIsTurnedAway) {
@@ -134,7 +147,7 @@ TEST(Worker, HasToKnowTheControlToken) {
     options.token = "a token for those who look";
     options.control_token = "a token for those who may do more";
     WorkScene const own;
-    RunningServer const server(options, moving_scene(), by_cache);
+    RunningServer const server(options, moving_scene(), by_paths);
     Hello hello = own.hello();
     hello.token = options.token;
     EXPECT_NE(RawViewer(server.port(), hello).failure().find("control token"), std::string::npos);

@@ -97,6 +97,13 @@ void trace_tile(PathLight const& light, ViewRays const& view, ImagePlane const& 
     }
 }
 
+int first_to_add(TileSums& sums, int paths) {
+    if (sums.paths >= paths) {
+        sums = {};
+    }
+    return sums.paths;
+}
+
 void add_path(TileLight const& light, TileSums& sums) {
     for (std::size_t i = 0; i < framelet_samples; ++i) {
         sums.red[i] += light.red[i];

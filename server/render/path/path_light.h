@@ -74,6 +74,9 @@ struct TileLight {
 /// Traces path number `path` of each sample of a tile. `view` is of the plane's viewport.
 void trace_tile(PathLight const& light, ViewRays const& view, ImagePlane const& plane, Tile tile, int path,
                 TileLight& out);
+/// Makes ready for paths until there are `paths` of each sample: sums of as many or more begin anew. Returns the number
+/// of the first that is to be added.
+int first_to_add(TileSums& sums, int paths);
 /// Adds what the next path of each sample has brought.
 void add_path(TileLight const& light, TileSums& sums);
 /// Sets the radiance of the samples to the means of their paths, of which there are some.

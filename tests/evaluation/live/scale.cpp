@@ -10,7 +10,6 @@
 #include <thread>
 
 #include <nlohmann/json.hpp>
-#include <unistd.h>
 
 #include "common/error.h"
 #include "tests/evaluation/charts/charts.h"
@@ -35,16 +34,10 @@ struct Used {
 
 /// Processor seconds of a process's first thread, which has a server's connections.
 double cpu_of_first_thread(pid_t pid) {
-    std::ifstream in("/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid) + "/stat");
-    std::string text((std::istreambuf_iterator<char>(in)), {});
-    std::istringstream fields(text.substr(text.rfind(')') + 1));
-    std::string skipped;
-    for (int i = 0; i < 11; ++i) {
-        fields >> skipped;
-    }
-    double user = 0, system = 0;
-    fields >> user >> system;
-    return (user + system) / static_cast<double>(::sysconf(_SC_CLK_TCK));
+    std::ifstream in("/proc/" + std::to_string(pid) + "/task/" + std::to_string(pid) + "/schedstat");
+    double nanoseconds = 0;
+    in >> nanoseconds;
+    return 1e-9 * nanoseconds;
 }
 
 /// A run's costs, after a while in which the picture is built up.
@@ -97,12 +90,12 @@ json row_of(int workers, Used const& used, double alone, double seconds) {
             {"worker_share", used.worker_paths / used.rays}};
 }
 
-/// Costs of a run with workers.
-WorkCosts costs_of(Used const& used) {
+/// Costs of a run with workers. `viewers_network`: processor seconds that a run without took for the viewer.
+WorkCosts costs_of(Used const& used, double viewers_network) {
     WorkCosts costs;
     costs.path = used.workers / used.worker_paths;
     double const own = (used.rays - used.worker_paths) * costs.path;
-    costs.network = used.network / used.worker_paths;
+    costs.network = std::max(used.network - viewers_network, 0.0) / used.worker_paths;
     costs.home = std::max(used.server - used.network - own, 0.0) / used.rays;
     costs.serial = std::min(serial_seconds, costs.home);
     return costs;
@@ -153,13 +146,14 @@ json measure_scale(ScaleOptions const& options) {
                 options.viewport.height);
     std::printf("workers  samples/s  us a sample   of one  by workers\n");
     json measured = json::array();
-    double alone = 0;
+    double alone = 0, viewers_network = 0;
     Used best;
     for (int const workers : options.workers) {
         Used const used = run(options, "reference", workers);
         measured.push_back(row_of(workers, used, alone, options.seconds));
         if (workers == 0) {
             alone = used.server / used.rays;
+            viewers_network = used.network;
         } else if (best.worker_paths == 0) { // with more they share processors on a small machine
             best = used;
         }
@@ -168,7 +162,7 @@ json measure_scale(ScaleOptions const& options) {
     if (best.worker_paths == 0) {
         return out;
     }
-    WorkCosts const costs = costs_of(best);
+    WorkCosts const costs = costs_of(best, viewers_network);
     std::printf("a sample costs %.2f us for its path, %.3f at the server, %.4f of its thread of connections\n",
                 1e6 * costs.path, 1e6 * costs.home, 1e6 * costs.network);
     out["costs_us"] = {{"path", 1e6 * costs.path},
