@@ -9,6 +9,18 @@
 #include "server/workers/order_tracing.h"
 
 namespace framelet {
+namespace {
+
+/// True where an order may say it: what deforms to nothing may have no place.
+bool can_travel(std::optional<PlaceGathering> const& wanted) {
+    auto const is_within = [](Vec3 const& value, float most) {
+        return glm::all(glm::lessThanEqual(glm::abs(value), Vec3(most))); // not for NaN
+    };
+    return wanted && is_within(wanted->place.position, max_camera_coordinate) &&
+           is_within(wanted->place.normal, 1.0005f);
+}
+
+} // namespace
 
 void PathRound::begin(WorkerPool* workers, PathLight const& light, Moment const& moment, std::vector<TilePath> tiles,
                       LightGathering* gathering, std::size_t packets) {
@@ -50,7 +62,7 @@ void PathRound::share() {
         }
     };
     split(true, tiles_.size(), std::clamp<std::size_t>(paths / framelet_samples, 1, max_order_tiles));
-    while (shared_packets_ < packets_ && gathering_->order(shared_packets_)) {
+    while (shared_packets_ < packets_ && can_travel(gathering_->order(shared_packets_))) {
         ++shared_packets_;
     }
     split(false, shared_packets_, std::clamp<std::size_t>(paths / lanes, 1, max_order_places));

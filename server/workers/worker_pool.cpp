@@ -90,6 +90,7 @@ void WorkerPool::answer(Id id, PathAnswer answer) {
                 note(member.latency, Seconds(std::chrono::steady_clock::now() - asked->second).count());
                 chunk->answer = std::move(answer);
                 chunk->state = State::answered;
+                ++member.answers;
                 answered_.push_back(index);
                 --out_;
             }
@@ -110,8 +111,14 @@ std::size_t WorkerPool::workers() const {
 }
 
 std::size_t WorkerPool::chunks_at_once() const {
+    Time const now = std::chrono::steady_clock::now();
     std::scoped_lock const lock(mutex_);
-    return members_.empty() ? all_threads() : chunks_a_thread * all_threads();
+    std::size_t const here = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+    std::size_t there = 0;
+    for (auto const& [id, member] : members_) { // who says that it has many has to show it
+        there += is_late(member, now) ? 0 : std::min(member.worker.threads, member.answers + 1);
+    }
+    return there == 0 ? here : chunks_a_thread * (here + there);
 }
 
 std::uint64_t WorkerPool::paths() const {
@@ -275,6 +282,13 @@ void WorkerPool::hand_out(Id id, Member& member, std::vector<Letter>& letters) {
         member.asked[chunk.order.number] = now;
         letters.push_back({member.worker.send, chunk.order});
     }
+}
+
+/// True where it has not answered something for longer than it ever takes.
+bool WorkerPool::is_late(Member const& member, Time now) {
+    double const most = late * member.latency + least_late_seconds;
+    return std::ranges::any_of(member.asked,
+                               [&](auto const& order) { return Seconds(now - order.second).count() > most; });
 }
 
 /// This process's threads and all workers'.

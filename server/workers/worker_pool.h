@@ -35,7 +35,7 @@ public:
     /// Takes in an answer. A worker that answers what it was not asked, or twice, is ended.
     void answer(Id id, PathAnswer answer);
     std::size_t workers() const;
-    /// How many chunks of a round keep this process's threads and all workers' busy.
+    /// How many chunks of a round keep this process's threads busy, and those of workers that answer in time.
     std::size_t chunks_at_once() const;
     /// How many paths of light have come from workers, since the beginning.
     std::uint64_t paths() const;
@@ -62,6 +62,7 @@ private:
         Worker worker;
         std::map<std::uint64_t, Time> asked; ///< orders that it has not answered, and when they were sent
         double latency = 0.02; ///< seconds from an order to its answer, about
+        std::size_t answers = 0; ///< that were of use
     };
     /// What is to be said once the lock is gone.
     struct Letter {
@@ -70,6 +71,7 @@ private:
     };
 
     std::size_t all_threads() const;
+    static bool is_late(Member const& member, Time now);
     void hand_out(Id id, Member& member, std::vector<Letter>& letters);
     void hand_out_all(std::vector<Letter>& letters);
     static void post(std::vector<Letter> const& letters);

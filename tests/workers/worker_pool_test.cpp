@@ -119,6 +119,8 @@ TEST_F(WorkerPoolTest, AWorkerThatStandsStillOrLeavesCostsNoChunk) {
     EXPECT_TRUE(first.is_done());
     EXPECT_EQ(first.done_there(), 0);
 
+    std::this_thread::sleep_for(60ms); // longer than it is taken to need
+    EXPECT_EQ(pool.chunks_at_once(), 1u) << "nothing is made for who does not answer";
     Round second(20); // it gets no more until it answers
     pool.begin(orders(20));
     EXPECT_EQ(stopped.kept.size(), 8u);
