@@ -218,6 +218,7 @@ private:
         }
         std::vector<PathOrder> orders(4);
         for (PathOrder& order : orders) {
+            order.view.viewport = {64, 48};
             order.tiles = {{Tile{1}, 0}};
         }
         std::size_t done = 0;
