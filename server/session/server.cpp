@@ -56,6 +56,7 @@ constexpr unsigned user_timeout_ms = 15000;
 /// Servers that follow this one's clock, and those of them from one source.
 constexpr std::ptrdiff_t most_followers = 64, most_followers_of_source = 16;
 constexpr std::ptrdiff_t most_workers = 1024;
+constexpr std::size_t most_threads = 1024; ///< of each
 
 /// What a picture at rest takes a pixel for its light.
 std::size_t light_bytes(PosedScene const& scene) {
@@ -144,7 +145,7 @@ struct Server::Impl {
         loop_options.stream.exposure = next->exposure;
         Welcome next_welcome = next->welcome;
         auto next_loop = make_loop(next->posed, loop_options);
-        SessionLoop::Sessions const sessions = connections.open_sessions();
+        SessionLoop::Sessions const sessions = connections.open_sessions(), others = connections.other_sessions();
         loop.stop();
         for (auto const& session : sessions) {
             try {
@@ -153,9 +154,13 @@ struct Server::Impl {
                 end_in_need(*session, true);
             }
         }
-        for (auto const& session : connections.other_sessions()) {
-            if (session->is_worker()) { // whose scene is the one before
-                session->end("the scene is loaded again", true);
+        for (auto const& session : others) {
+            try {
+                if (session->is_worker()) { // whose scene is the one before
+                    session->end("the scene is loaded again", true);
+                }
+            } catch (std::bad_alloc const&) {
+                end_in_need(*session, true);
             }
         }
         admission.forget_viewers(light_bytes(next->posed));
@@ -315,7 +320,7 @@ struct Server::Impl {
             spdlog::info("a worker of {} joins from {}{}", counted(offer.threads, "thread"), connection.peer, *more);
         }
         auto const session = connection.session;
-        WorkerPool::Worker worker{std::max<std::size_t>(offer.threads, 1),
+        WorkerPool::Worker worker{std::clamp<std::size_t>(offer.threads, 1, most_threads),
                                   [session](PathOrder const& order) { session->send(order); },
                                   [session](std::string const& reason) { session->end(reason); }};
         asio::post(io, [this, id, worker = std::move(worker)]() mutable { // once it has been welcomed

@@ -148,12 +148,10 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
     }
     Viewport const viewport = camera_->view.viewport;
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
-    double const seconds = moment_seconds(samples_per_second(turn) / pixels);
+    double const usual = camera_moves ? moment_seconds(samples_per_second(turn) / pixels) : moments_.standing_seconds();
+    double const seconds = worth_posing(usual, turn.pose_seconds);
     bool const jumps = switches_ahead(turn, scene, awaited_seconds + seconds).any;
-    if (camera_moves) {
-        return jumps ? least_moment_seconds : seconds;
-    }
-    return moments_.standing_seconds();
+    return jumps ? std::min(usual, least_moment_seconds) : seconds;
 }
 
 /// Seconds by which a moment's camera is ahead of the moment: what the first batch of the next one takes until it is
@@ -198,7 +196,7 @@ HeldMoment FrameletStream::new_moment(Turn const& turn, PosedScene& scene) const
         return {state_at(time_in(ahead, turn), scene), turn.now, seconds, 0, false};
     }
     bool const camera_moves = then != now;
-    double const seconds = worth_posing(new_moment_seconds(camera_moves, turn, scene), turn.pose_seconds);
+    double const seconds = new_moment_seconds(camera_moves, turn, scene);
     double scene_ahead = options_.looks_ahead ? (camera_moves ? 1.5 : 1) * seconds + travel_seconds() : 0;
     double camera_ahead = scene_ahead + camera_lead(now, then, turn, scene);
     auto const jump = switches_ahead(turn, scene, awaited_seconds).lone;

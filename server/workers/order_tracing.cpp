@@ -22,12 +22,11 @@ void append(Value const& value, std::vector<float>& out) {
     std::memcpy(out.data() + out.size() - sizeof(Value) / sizeof(float), &value, sizeof(Value));
 }
 
-/// False where there are not as many numbers as these have, or one is none that light has.
+/// False where there are not as many numbers as these have, or one is beyond `most`.
 template <class Value>
-bool read(std::vector<float> const& light, std::span<Value> out) {
-    constexpr float most = 1e30f;
+bool read(std::vector<float> const& light, float most, std::span<Value> out) {
     if (light.size() * sizeof(float) != out.size_bytes() ||
-        !std::ranges::all_of(light, [](float value) { return std::abs(value) <= most; })) { // not for NaN
+        !std::ranges::all_of(light, [most](float value) { return std::abs(value) <= most; })) { // not for NaN
         return false;
     }
     std::memcpy(static_cast<void*>(out.data()), light.data(), out.size_bytes());
@@ -75,7 +74,8 @@ PathAnswer trace_order(PathLight const& light, PathOrder const& order) {
 }
 
 bool read_tiles(PathAnswer const& answer, std::span<TileLight> out) {
-    return read(answer.light, out) && std::ranges::all_of(out, [](TileLight const& tile) {
+    constexpr float most = 1e15f; // its square is a number
+    return read(answer.light, most, out) && std::ranges::all_of(out, [](TileLight const& tile) {
                auto const not_negative = [](float value) { return value >= 0; };
                return std::ranges::all_of(tile.red, not_negative) && std::ranges::all_of(tile.green, not_negative) &&
                       std::ranges::all_of(tile.blue, not_negative);
@@ -83,7 +83,8 @@ bool read_tiles(PathAnswer const& answer, std::span<TileLight> out) {
 }
 
 bool read_places(PathAnswer const& answer, std::span<GatheredPacket> out) {
-    return read(answer.light, out) && std::ranges::all_of(out, is_gathered);
+    constexpr float most = 1e30f;
+    return read(answer.light, most, out) && std::ranges::all_of(out, is_gathered);
 }
 
 } // namespace framelet

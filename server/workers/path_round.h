@@ -1,6 +1,6 @@
 // The paths of light of one batch, or of a moment in which nobody waits: traced by this process, and by its workers
-// where it has some. In: a posed scene, tiles, packets that a gathering has planned. Out: what the paths bring, the
-// same whoever has traced them.
+// where it has some. In: a posed scene, tiles, packets that a gathering has planned. Out: what the paths bring: through
+// tiles the same bits whoever has traced them; packets of workers do not end where light is known.
 #pragma once
 
 #include <span>

@@ -84,10 +84,15 @@ void WorkerPool::answer(Id id, PathAnswer answer) {
             Chunk* const chunk = chunk_of(answer.number);
             bool const is_wanted = chunk != nullptr && chunk->state == State::out && chunk->worker == id;
             auto const index = static_cast<std::size_t>(answer.number - first_number_);
-            if (is_wanted && answer.light.empty()) { // it has left it out
+            constexpr double most_latency = 1;
+            double const took = Seconds(std::chrono::steady_clock::now() - asked->second).count();
+            if (!answer.light.empty()) { // late ones too: else it would always be given up too early
+                note(member.latency, std::min(took, most_latency));
+            }
+            if (is_wanted && answer.light.empty()) { // given again and again, nobody else would come to do it
                 put_back(index);
+                end = member.worker.end;
             } else if (is_wanted) {
-                note(member.latency, Seconds(std::chrono::steady_clock::now() - asked->second).count());
                 chunk->answer = std::move(answer);
                 chunk->state = State::answered;
                 ++member.answers;
@@ -95,13 +100,15 @@ void WorkerPool::answer(Id id, PathAnswer answer) {
                 --out_;
             }
             member.asked.erase(asked);
-            hand_out(id, member, letters);
+            if (!end) {
+                hand_out(id, member, letters);
+            }
         }
     }
     changed_.notify_all();
     post(letters);
     if (end) {
-        end("the worker answers what it was not asked");
+        end("the worker answers what it was not asked, or not what it was");
     }
 }
 
