@@ -195,7 +195,7 @@ std::variant<Options, int> parse_options(int argc, char const* const* argv) {
     app.add_option(
            "--work-for", work_for,
            "Serve nobody, but trace paths of light for the server at this address, which has the same scene and "
-           "options, the same token, and --light full or reference; encrypted where it is tls://HOST, or --tls-cert "
+           "options, the same tokens, and --light full or reference; encrypted where it is tls://HOST, or --tls-cert "
            "is given")
         ->type_name("HOST")
         ->excludes(watch)

@@ -9,6 +9,7 @@
 #include "server/render/framelet_renderer.h"
 #include "server/render/light/luminance.h"
 #include "server/render/path/path_light.h"
+#include "server/render/visible_tiles.h"
 
 namespace framelet {
 namespace {
@@ -64,12 +65,7 @@ void render_means(RenderScene const& scene, ViewRays const& view, ImagePlane con
 FirstLook take_first_look(RenderScene const& scene, Camera const& camera, PathLight const* light) {
     constexpr Viewport probe{64, 48};
     ImagePlane const plane(probe);
-    std::vector<Tile> tiles;
-    for (std::uint32_t code = 1u << (2 * plane.pixel_depth()); code < 2u << (2 * plane.pixel_depth()); ++code) {
-        if (plane.is_visible({code})) {
-            tiles.push_back({code});
-        }
-    }
+    std::vector<Tile> const tiles = visible_tiles(plane, plane.pixel_depth());
     FirstLook look(tiles.size());
     ViewRays const view = make_view_rays(camera, probe);
     tbb::parallel_for(std::size_t(0), tiles.size(), [&](std::size_t i) {

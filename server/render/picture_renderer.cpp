@@ -9,19 +9,10 @@
 #include "common/error.h"
 #include "server/render/display_framelet.h"
 #include "server/render/framelet_renderer.h"
+#include "server/render/visible_tiles.h"
 
 namespace framelet {
 namespace {
-
-std::vector<Tile> visible_tiles(ImagePlane const& plane, int depth) {
-    std::vector<Tile> tiles;
-    for (std::uint32_t code = 1u << (2 * depth); code < 2u << (2 * depth); ++code) {
-        if (plane.is_visible({code})) {
-            tiles.push_back({code});
-        }
-    }
-    return tiles;
-}
 
 /// Averages a framelet's samples over each pixel that it covers.
 void add_pixels(DisplayFramelet const& framelet, ImagePlane const& plane, int samples_per_side, Picture& picture) {

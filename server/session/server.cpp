@@ -289,11 +289,11 @@ struct Server::Impl {
         return answer;
     }
 
-    /// How many there are already of those who have no pictures, workers or not; `source`: of one, unless it is empty.
-    std::ptrdiff_t count_others(bool workers_only, std::string const& source = {}) const {
+    /// How many workers there are already, or others who have no pictures; `source`: of one, unless it is empty.
+    std::ptrdiff_t count_others(bool are_workers, std::string const& source = {}) const {
         return std::ranges::count_if(connections.all(), [&](auto const& other) {
             Session const& session = *other.second.session;
-            return session.is_open() && !session.has_pictures() && session.is_worker() == workers_only &&
+            return session.is_open() && !session.has_pictures() && session.is_worker() == are_workers &&
                    (source.empty() || other.second.source == source);
         });
     }
@@ -316,13 +316,13 @@ struct Server::Impl {
         }
         Connection const& connection = *connections.find(id);
         waiting.leave(id);
-        if (auto const more = come.next(steady_clock::now())) {
-            spdlog::info("a worker of {} joins from {}{}", counted(offer.threads, "thread"), connection.peer, *more);
-        }
         auto const session = connection.session;
         WorkerPool::Worker worker{std::clamp<std::size_t>(offer.threads, 1, most_threads),
                                   [session](PathOrder const& order) { session->send(order); },
                                   [session](std::string const& reason) { session->end(reason); }};
+        if (auto const more = come.next(steady_clock::now())) {
+            spdlog::info("a worker of {} joins from {}{}", counted(worker.threads, "thread"), connection.peer, *more);
+        }
         asio::post(io, [this, id, worker = std::move(worker)]() mutable { // once it has been welcomed
             if (connections.find(id) != nullptr) {
                 workers.join(id, std::move(worker));

@@ -149,9 +149,12 @@ double FrameletStream::new_moment_seconds(bool camera_moves, Turn const& turn, P
     Viewport const viewport = camera_->view.viewport;
     double const pixels = static_cast<double>(viewport.width) * viewport.height;
     double const usual = camera_moves ? moment_seconds(samples_per_second(turn) / pixels) : moments_.standing_seconds();
-    double const seconds = worth_posing(usual, turn.pose_seconds);
-    bool const jumps = switches_ahead(turn, scene, awaited_seconds + seconds).any;
-    return jumps ? std::min(usual, least_moment_seconds) : seconds;
+    double seconds = worth_posing(usual, turn.pose_seconds);
+    auto const jumps = [&] { return switches_ahead(turn, scene, awaited_seconds + seconds).any; };
+    while (seconds > usual && jumps()) {
+        seconds = std::max(0.5 * seconds, usual);
+    }
+    return jumps() ? std::min(usual, least_moment_seconds) : seconds;
 }
 
 /// Seconds by which a moment's camera is ahead of the moment: what the first batch of the next one takes until it is

@@ -1,6 +1,7 @@
 #include "server/stream/posed_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <utility>
 
@@ -8,6 +9,8 @@
 #include <tbb/global_control.h>
 
 #include "common/mix_bits.h"
+#include "server/render/prepared/prepared_scene.h"
+#include "server/render/visible_tiles.h"
 #include "server/scene/motion/bodies.h"
 
 namespace framelet {
@@ -65,23 +68,40 @@ void PosedScene::learn_first_light() {
     }
 }
 
-/// A digest of what a path through each sample of a small picture brings, of which program and processor have a part.
+/// A digest of what a path through each sample of a small picture brings, of which program and processor have a part;
+/// and of what may be nowhere in that: clips, lamps, the environment.
 std::uint64_t PosedScene::probe_light(Camera const& camera) const {
     constexpr Viewport probe{32, 32};
     ImagePlane const plane(probe);
     ViewRays const rays = make_view_rays(camera, probe);
     std::uint64_t digest = 1;
+    auto const add = [&digest](auto const& floats) {
+        for (float const value : floats) {
+            digest = mix_in(digest, std::bit_cast<std::uint32_t>(value));
+        }
+    };
     TileLight light;
-    for (std::uint32_t code = 1u << (2 * plane.pixel_depth()); code < 2u << (2 * plane.pixel_depth()); ++code) {
-        if (!plane.accepts({code})) {
-            continue;
-        }
-        trace_tile(*path_light_, rays, plane, {code}, 0, light);
-        for (auto const* const channel : {&light.red, &light.green, &light.blue}) {
-            for (float const value : *channel) {
-                digest = mix_in(digest, std::bit_cast<std::uint32_t>(value));
-            }
-        }
+    for (Tile const tile : visible_tiles(plane, plane.pixel_depth())) {
+        trace_tile(*path_light_, rays, plane, tile, 0, light);
+        add(light.red);
+        add(light.green);
+        add(light.blue);
+    }
+    for (Index const clip : clips_) {
+        digest = mix_in(digest, static_cast<std::uint64_t>(clip));
+    }
+    LampSizes const& sizes = path_light_->options().sizes;
+    add(std::array{sizes.sun, sizes.lamp});
+    for (Light const& lamp : scene_.lights) {
+        digest = mix_in(digest, static_cast<std::uint64_t>(lamp.type) << 32 ^ static_cast<std::uint64_t>(lamp.node));
+        add(std::array{lamp.color.r, lamp.color.g, lamp.color.b, lamp.intensity, lamp.range, lamp.inner_cone,
+                       lamp.outer_cone});
+    }
+    for (int axis = 0; axis < 6; ++axis) {
+        Vec3 direction(0);
+        direction[axis % 3] = axis < 3 ? 1.0f : -1.0f;
+        Vec3 const color = render_scene_.prepared().environment.diffuse(direction);
+        add(std::array{color.r, color.g, color.b});
     }
     return std::max(digest, std::uint64_t{1});
 }

@@ -1,6 +1,7 @@
 #include "server/workers/path_round.h"
 
 #include <algorithm>
+#include <numeric>
 #include <utility>
 
 #include <tbb/parallel_for.h>
@@ -12,12 +13,11 @@ namespace framelet {
 namespace {
 
 /// True where an order may say it: what deforms to nothing may have no place.
-bool can_travel(std::optional<PlaceGathering> const& wanted) {
+bool can_travel(PlaceGathering const& wanted) {
     auto const is_within = [](Vec3 const& value, float most) {
         return glm::all(glm::lessThanEqual(glm::abs(value), Vec3(most))); // not for NaN
     };
-    return wanted && is_within(wanted->place.position, max_camera_coordinate) &&
-           is_within(wanted->place.normal, 1.0005f);
+    return is_within(wanted.place.position, max_camera_coordinate) && is_within(wanted.place.normal, 1.0005f);
 }
 
 } // namespace
@@ -30,7 +30,8 @@ void PathRound::begin(WorkerPool* workers, PathLight const& light, Moment const&
     moment_ = moment;
     tiles_ = std::move(tiles);
     light_.resize(std::max(light_.size(), tiles_.size()));
-    packets_ = packets;
+    packets_.resize(packets);
+    std::iota(packets_.begin(), packets_.end(), std::size_t{0});
     shared_packets_ = 0;
     chunks_.clear();
     if (workers_ != nullptr && workers_->workers() > 0) {
@@ -40,39 +41,43 @@ void PathRound::begin(WorkerPool* workers, PathLight const& light, Moment const&
 
 void PathRound::share() {
     std::vector<PathOrder> orders;
-    std::size_t const paths = workers_->paths_a_chunk();
-    auto const split = [&](bool is_of_tiles, std::size_t count, std::size_t at_once) {
-        for (std::size_t first = 0; first < count; first += at_once) {
-            Chunk const chunk{is_of_tiles, first, std::min(at_once, count - first)};
+    std::vector<PlacePaths> places;
+    std::vector<std::size_t> stay;
+    for (std::size_t packet = 0; packet < packets_.size(); ++packet) {
+        auto const wanted = gathering_->order(packet);
+        if (wanted && can_travel(*wanted)) {
+            packets_[places.size()] = packet;
+            places.push_back({wanted->place.frame, wanted->place.position, wanted->place.normal, wanted->seed,
+                              wanted->first, wanted->bright});
+        } else {
+            stay.push_back(packet);
+        }
+    }
+    shared_packets_ = places.size();
+    std::ranges::copy(stay, packets_.begin() + static_cast<std::ptrdiff_t>(shared_packets_));
+    auto const split = [&](bool is_of_tiles, auto const& all, auto PathOrder::*part, std::size_t at_once) {
+        for (std::size_t first = 0; first < all.size(); first += at_once) {
+            Chunk const chunk{is_of_tiles, first, std::min(at_once, all.size() - first)};
             PathOrder order;
             order.scene_time = moment_.scene_time;
             order.view = moment_.view;
             order.display = path_light_->scene().scene.display;
-            for (std::size_t i = first; i < first + chunk.count; ++i) {
-                if (is_of_tiles) {
-                    order.tiles.push_back(tiles_[i]);
-                } else {
-                    PlaceGathering const wanted = *gathering_->order(i);
-                    order.places.push_back({wanted.place.frame, wanted.place.position, wanted.place.normal, wanted.seed,
-                                            wanted.first, wanted.bright});
-                }
-            }
+            auto const begin = all.begin() + static_cast<std::ptrdiff_t>(first);
+            (order.*part).assign(begin, begin + static_cast<std::ptrdiff_t>(chunk.count));
             chunks_.push_back(chunk);
             orders.push_back(std::move(order));
         }
     };
-    split(true, tiles_.size(), std::clamp<std::size_t>(paths / framelet_samples, 1, max_order_tiles));
-    while (shared_packets_ < packets_ && can_travel(gathering_->order(shared_packets_))) {
-        ++shared_packets_;
-    }
-    split(false, shared_packets_, std::clamp<std::size_t>(paths / lanes, 1, max_order_places));
+    std::size_t const paths = workers_->paths_a_chunk();
+    split(true, tiles_, &PathOrder::tiles, std::clamp<std::size_t>(paths / framelet_samples, 1, max_order_tiles));
+    split(false, places, &PathOrder::places, std::clamp<std::size_t>(paths / lanes, 1, max_order_places));
     workers_->begin(std::move(orders));
 }
 
 /// Traces one of the tiles, or of the packets, which are numbered behind the tiles.
 void PathRound::trace(std::size_t index) {
     if (index >= tiles_.size()) {
-        gathering_->follow(index - tiles_.size());
+        gathering_->follow(packets_[index - tiles_.size()]);
         return;
     }
     NumberedView const& view = moment_.view;
@@ -89,17 +94,18 @@ bool PathRound::take(Chunk const& chunk, PathAnswer const& answer) {
         return false;
     }
     for (std::size_t i = 0; i < chunk.count; ++i) {
-        gathering_->take_gathered(chunk.first + i, gathered[i]);
+        gathering_->take_gathered(packets_[chunk.first + i], gathered[i]);
     }
     return true;
 }
 
 void PathRound::finish() {
     if (chunks_.empty()) {
-        tbb::parallel_for(std::size_t{0}, tiles_.size() + packets_, [&](std::size_t i) { trace(i); });
+        tbb::parallel_for(std::size_t{0}, tiles_.size() + packets_.size(), [&](std::size_t i) { trace(i); });
         return;
     }
-    tbb::parallel_for(tiles_.size() + shared_packets_, tiles_.size() + packets_, [&](std::size_t i) { trace(i); });
+    tbb::parallel_for(tiles_.size() + shared_packets_, tiles_.size() + packets_.size(),
+                      [&](std::size_t i) { trace(i); });
     double const waited = workers_->finish(
         [&](std::size_t index) {
             Chunk const& chunk = chunks_[index];

@@ -30,7 +30,7 @@ public:
     std::span<TileLight const> light() const { return std::span(light_).first(tiles_.size()); }
 
 private:
-    /// Some of the tiles, or of the packets.
+    /// Some of `tiles_`, or of `packets_`.
     struct Chunk {
         bool is_of_tiles = true;
         std::size_t first = 0, count = 0;
@@ -46,7 +46,8 @@ private:
     Moment moment_;
     std::vector<TilePath> tiles_;
     std::vector<TileLight> light_; ///< as many as a batch ever had
-    std::size_t packets_ = 0, shared_packets_ = 0; ///< the latter are the first of them
+    std::vector<std::size_t> packets_; ///< those that may be shared first
+    std::size_t shared_packets_ = 0; ///< how many these are
     std::vector<Chunk> chunks_; ///< that are shared with workers; empty: nothing is
 };
 

@@ -29,6 +29,10 @@ void note(double& mean, double seconds) {
     mean += weight * (seconds - mean);
 }
 
+std::size_t threads_here() {
+    return tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+}
+
 WorkerPool::Time after(WorkerPool::Time time, double seconds) {
     return time + std::chrono::duration_cast<WorkerPool::Time::duration>(Seconds(seconds));
 }
@@ -82,9 +86,9 @@ void WorkerPool::answer(Id id, PathAnswer answer) {
             end = member.worker.end;
         } else {
             Chunk* const chunk = chunk_of(answer.number);
+            constexpr double most_latency = 1;
             bool const is_wanted = chunk != nullptr && chunk->state == State::out && chunk->worker == id;
             auto const index = static_cast<std::size_t>(answer.number - first_number_);
-            constexpr double most_latency = 1;
             double const took = Seconds(std::chrono::steady_clock::now() - asked->second).count();
             if (!answer.light.empty()) { // late ones too: else it would always be given up too early
                 note(member.latency, std::min(took, most_latency));
@@ -120,12 +124,8 @@ std::size_t WorkerPool::workers() const {
 std::size_t WorkerPool::chunks_at_once() const {
     Time const now = std::chrono::steady_clock::now();
     std::scoped_lock const lock(mutex_);
-    std::size_t const here = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    std::size_t there = 0;
-    for (auto const& [id, member] : members_) { // who says that it has many has to show it
-        there += is_late(member, now) ? 0 : std::min(member.worker.threads, member.answers + 1);
-    }
-    return there == 0 ? here : chunks_a_thread * (here + there);
+    std::size_t const threads = all_threads(now);
+    return threads == threads_here() ? threads : chunks_a_thread * threads;
 }
 
 std::uint64_t WorkerPool::paths() const {
@@ -161,9 +161,8 @@ void WorkerPool::begin(std::vector<PathOrder> orders) {
 
 double WorkerPool::finish(std::function<void(std::size_t)> const& here,
                           std::function<bool(std::size_t, PathAnswer const&)> const& there) {
-    std::size_t const threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
     tbb::parallel_for(
-        std::size_t{0}, threads,
+        std::size_t{0}, threads_here(),
         [&](std::size_t) {
             while (do_one(here, there)) {
             }
@@ -251,8 +250,10 @@ void WorkerPool::take_in(std::unique_lock<std::mutex>& lock,
     bool const is_light = there(index, chunk.answer);
     lock.lock();
     if (is_light) {
-        note_path_seconds(chunk.order, 1e-6 * chunk.answer.took_us);
+        double const since = Seconds(std::chrono::steady_clock::now() - chunk.sent).count();
+        note_path_seconds(chunk.order, std::min(1e-6 * chunk.answer.took_us, since));
         paths_ += count_paths(chunk.order);
+        chunk.answer.light = {};
         return;
     }
     chunk.state = State::waiting;
@@ -276,33 +277,34 @@ void WorkerPool::note_path_seconds(PathOrder const& order, double seconds) {
 /// called under the lock, as all that follow.
 void WorkerPool::hand_out(Id id, Member& member, std::vector<Letter>& letters) {
     Time const now = std::chrono::steady_clock::now();
-    std::size_t const threads = all_threads();
-    while (!waiting_.empty() &&
-           member.asked.size() < member.worker.threads * (waiting_.size() > threads ? orders_a_thread : 1)) {
+    std::size_t const threads = all_threads(now), own = proven_threads(member, now);
+    while (!waiting_.empty() && member.asked.size() < own * (waiting_.size() > threads ? orders_a_thread : 1)) {
         std::size_t const index = waiting_.front();
-        waiting_.pop_front();
         Chunk& chunk = chunks_[index];
+        letters.push_back({member.worker.send, chunk.order});
+        member.asked[chunk.order.number] = now;
+        waiting_.pop_front();
         chunk.state = State::out;
         chunk.worker = id;
         chunk.sent = now;
         ++out_;
-        member.asked[chunk.order.number] = now;
-        letters.push_back({member.worker.send, chunk.order});
     }
 }
 
-/// True where it has not answered something for longer than it ever takes.
-bool WorkerPool::is_late(Member const& member, Time now) {
+/// How many threads of a worker count: it has to show by its answers that it has many, and none do while something is
+/// late.
+std::size_t WorkerPool::proven_threads(Member const& member, Time now) {
     double const most = late * member.latency + least_late_seconds;
-    return std::ranges::any_of(member.asked,
-                               [&](auto const& order) { return Seconds(now - order.second).count() > most; });
+    bool const is_late = std::ranges::any_of(
+        member.asked, [&](auto const& order) { return Seconds(now - order.second).count() > most; });
+    return is_late ? 0 : std::min(member.worker.threads, member.answers + 1);
 }
 
-/// This process's threads and all workers'.
-std::size_t WorkerPool::all_threads() const {
-    std::size_t threads = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
+/// This process's threads and those of all workers that count.
+std::size_t WorkerPool::all_threads(Time now) const {
+    std::size_t threads = threads_here();
     for (auto const& [id, member] : members_) {
-        threads += member.worker.threads;
+        threads += proven_threads(member, now);
     }
     return threads;
 }

@@ -1,7 +1,7 @@
 // Shares rounds of work with other processes: this one's threads and its workers take chunks, until all are done. In:
 // orders, workers as they come and go, answers. Out: each chunk done once, here or there, whatever becomes of a worker.
 //
-// A worker that has left, or is later than it ever was, loses nothing but its own time: this process does its chunks.
+// A worker that has left, or is late by its own measure, loses nothing but its own time: this process does its chunks.
 #pragma once
 
 #include <chrono>
@@ -70,8 +70,8 @@ private:
         PathOrder order;
     };
 
-    std::size_t all_threads() const;
-    static bool is_late(Member const& member, Time now);
+    static std::size_t proven_threads(Member const& member, Time now);
+    std::size_t all_threads(Time now) const;
     void hand_out(Id id, Member& member, std::vector<Letter>& letters);
     void hand_out_all(std::vector<Letter>& letters);
     static void post(std::vector<Letter> const& letters);

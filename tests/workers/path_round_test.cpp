@@ -146,6 +146,11 @@ TEST(PosedScene, ItsLightHasAnIdentity) {
     RenderScene brighter(scene, Environment::uniform(Vec3(0.3f, 0.6f, 0.91f)));
     PosedScene const other(scene, {0}, brighter, {LightMethod::reference, 0.53f, 0.1f});
     EXPECT_NE(other.light_identity(), one.posed.light_identity());
+    RenderScene same(scene, Environment::uniform(Vec3(0.3f, 0.6f, 0.9f)));
+    PosedScene const without_clips(scene, {}, same, {LightMethod::reference, 0.53f, 0.1f});
+    EXPECT_NE(without_clips.light_identity(), one.posed.light_identity()) << "at rest they are the same";
+    PosedScene const other_lamps(scene, {0}, same, {LightMethod::reference, 0.53f, 0.2f});
+    EXPECT_NE(other_lamps.light_identity(), one.posed.light_identity()) << "though it has none";
 }
 
 } // namespace

@@ -148,9 +148,8 @@ void RenderScene::deform_elsewhen(Placement const& placement, std::size_t time, 
         Geometry& geometry = geometries[i];
         std::vector<Vec3>& positions = deformed_motion_[placement.deformed][i].elsewhen[time];
         positions.resize(geometry.positions.size());
-        std::vector<Mat4> joints; // scratch of its own: while it waits for others a thread takes other meshes
         deform_positions(*geometry.source, other.morph_weights[placement.node], placement.skin, other, placed.linear,
-                         placed.translation, joints, positions);
+                         placed.translation, positions);
         geometry.elsewhen[time] = positions;
     }
 }

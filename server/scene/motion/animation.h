@@ -80,10 +80,8 @@ struct DeformedVertices {
 void deform(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin, ScenePose const& pose,
             DeformedVertices& out);
 /// Their positions alone, likewise, each taken on by `linear` and `translation`. `out`: as many as the primitive has.
-/// `joint_matrices` is scratch.
 void deform_positions(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin,
-                      ScenePose const& pose, Mat3 const& linear, Vec3 const& translation,
-                      std::vector<Mat4>& joint_matrices, std::span<Vec3> out);
+                      ScenePose const& pose, Mat3 const& linear, Vec3 const& translation, std::span<Vec3> out);
 
 /// A primitive where a node shows it.
 struct ScenePart {

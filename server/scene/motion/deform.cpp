@@ -13,22 +13,32 @@ namespace {
 /// Number of vertices that one task takes; small enough to spread, large enough to be worth it.
 constexpr std::size_t grain = 2048;
 
-/// Adds the weighted targets to vertices [first, last). `weights` has one entry a target.
-void morph(Primitive const& primitive, std::span<float const> weights, std::size_t first, std::size_t last,
-           DeformedVertices& out) {
-    std::size_t const targets = std::min(weights.size(), primitive.morph_targets.size());
+/// Calls `add(TARGET, WEIGHT)` for each target that counts. `weights` has one entry a target.
+template <class Add>
+void for_each_target(Primitive const& primitive, std::span<float const> weights, Add add) {
+    for (std::size_t t = 0; t < std::min(weights.size(), primitive.morph_targets.size()); ++t) {
+        if (weights[t] != 0) {
+            add(primitive.morph_targets[t], weights[t]);
+        }
+    }
+}
+
+/// Sets positions [first, last) to the morphed ones.
+void morph_positions(Primitive const& primitive, std::span<float const> weights, std::size_t first, std::size_t last,
+                     std::span<Vec3> out) {
+    std::copy_n(primitive.positions.data() + first, last - first, out.data() + first);
+    for_each_target(primitive, weights, [&](MorphTarget const& target, float weight) {
+        for (std::size_t i = first; i < last && !target.positions.empty(); ++i) {
+            out[i] += weight * target.positions[i];
+        }
+    });
+}
+
+/// Adds the weighted targets to normals and tangents of vertices [first, last).
+void morph_frames(Primitive const& primitive, std::span<float const> weights, std::size_t first, std::size_t last,
+                  DeformedVertices& out) {
     bool normals_changed = false;
-    for (std::size_t t = 0; t < targets; ++t) {
-        MorphTarget const& target = primitive.morph_targets[t];
-        float const weight = weights[t];
-        if (weight == 0) {
-            continue;
-        }
-        if (!target.positions.empty()) {
-            for (std::size_t i = first; i < last; ++i) {
-                out.positions[i] += weight * target.positions[i];
-            }
-        }
+    for_each_target(primitive, weights, [&](MorphTarget const& target, float weight) {
         if (!target.normals.empty()) {
             normals_changed = true;
             for (std::size_t i = first; i < last; ++i) {
@@ -40,7 +50,7 @@ void morph(Primitive const& primitive, std::span<float const> weights, std::size
                 out.tangents[i] += weight * Vec4(target.tangents[i], 0);
             }
         }
-    }
+    });
     if (normals_changed) {
         for (std::size_t i = first; i < last; ++i) {
             out.normals[i] = unit_or(out.normals[i], primitive.normals[i]);
@@ -57,6 +67,7 @@ Vec3 transform_normal(Mat4 const& m, Vec3 const& n, float determinant_sign) {
     return unit_or(result * determinant_sign, n);
 }
 
+/// Sets `joints` to what each joint does to vertices.
 void find_joints(Skin const& skin, ScenePose const& pose, std::vector<Mat4>& joints) {
     joints.clear();
     for (std::size_t j = 0; j < skin.joints.size(); ++j) {
@@ -65,14 +76,18 @@ void find_joints(Skin const& skin, ScenePose const& pose, std::vector<Mat4>& joi
     }
 }
 
+Mat4 blended(JointInfluence const& influence, std::span<Mat4 const> joints) {
+    Mat4 blend = influence.weights[0] * joints[influence.joints[0]];
+    for (std::size_t k = 1; k < 4 && influence.weights[k] > 0; ++k) { // the strongest come first
+        blend += influence.weights[k] * joints[influence.joints[k]];
+    }
+    return blend;
+}
+
 void skin_vertices(Primitive const& primitive, std::span<Mat4 const> joints, std::size_t first, std::size_t last,
                    DeformedVertices& out) {
     for (std::size_t i = first; i < last; ++i) {
-        JointInfluence const& influence = primitive.influences[i];
-        Mat4 blend = influence.weights[0] * joints[influence.joints[0]];
-        for (std::size_t k = 1; k < 4 && influence.weights[k] > 0; ++k) { // the strongest come first
-            blend += influence.weights[k] * joints[influence.joints[k]];
-        }
+        Mat4 const blend = blended(primitive.influences[i], joints);
         out.positions[i] = Vec3(blend * Vec4(out.positions[i], 1));
         float const determinant = glm::dot(glm::cross(Vec3(blend[0]), Vec3(blend[1])), Vec3(blend[2]));
         float const sign = determinant < 0 ? -1.0f : 1.0f;
@@ -113,10 +128,10 @@ void deform(Primitive const& primitive, std::span<float const> morph_weights, Sk
                 std::copy_n(from.data() + first, last - first, to.data() + first);
             }
         };
-        copy(primitive.positions, out.positions);
         copy(primitive.normals, out.normals);
         copy(primitive.tangents, out.tangents);
-        morph(primitive, morph_weights, first, last, out);
+        morph_positions(primitive, morph_weights, first, last, out.positions);
+        morph_frames(primitive, morph_weights, first, last, out);
         if (skin) {
             skin_vertices(primitive, out.joint_matrices, first, last, out);
         }
@@ -125,35 +140,20 @@ void deform(Primitive const& primitive, std::span<float const> morph_weights, Sk
 }
 
 void deform_positions(Primitive const& primitive, std::span<float const> morph_weights, Skin const* skin,
-                      ScenePose const& pose, Mat3 const& linear, Vec3 const& translation,
-                      std::vector<Mat4>& joint_matrices, std::span<Vec3> out) {
+                      ScenePose const& pose, Mat3 const& linear, Vec3 const& translation, std::span<Vec3> out) {
     FRAMELET_CHECK(out.size() == primitive.positions.size() &&
                    (!skin || primitive.influences.size() == primitive.positions.size()));
+    std::vector<Mat4> joints;
     if (skin) {
-        find_joints(*skin, pose, joint_matrices);
+        find_joints(*skin, pose, joints);
     }
-    std::size_t const targets = std::min(morph_weights.size(), primitive.morph_targets.size());
     tbb::parallel_for(std::size_t(0), (out.size() + grain - 1) / grain, [&](std::size_t block) {
         std::size_t const first = block * grain;
         std::size_t const last = std::min(first + grain, out.size());
-        std::copy_n(primitive.positions.data() + first, last - first, out.data() + first);
-        for (std::size_t t = 0; t < targets; ++t) {
-            std::vector<Vec3> const& offsets = primitive.morph_targets[t].positions;
-            for (std::size_t i = first; i < last && morph_weights[t] != 0 && !offsets.empty(); ++i) {
-                out[i] += morph_weights[t] * offsets[i];
-            }
-        }
+        morph_positions(primitive, morph_weights, first, last, out);
         for (std::size_t i = first; i < last; ++i) {
-            Vec3 position = out[i];
-            if (skin) {
-                JointInfluence const& influence = primitive.influences[i];
-                Vec4 const at(position, 1);
-                position = influence.weights[0] * Vec3(joint_matrices[influence.joints[0]] * at);
-                for (std::size_t k = 1; k < 4 && influence.weights[k] > 0; ++k) { // the strongest come first
-                    position += influence.weights[k] * Vec3(joint_matrices[influence.joints[k]] * at);
-                }
-            }
-            out[i] = linear * position + translation;
+            Vec3 const own = skin ? Vec3(blended(primitive.influences[i], joints) * Vec4(out[i], 1)) : out[i];
+            out[i] = linear * own + translation;
         }
     });
 }

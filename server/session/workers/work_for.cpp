@@ -59,7 +59,6 @@ public:
 private:
     /// Connects, and works until the connection is lost.
     void work(std::stop_token const& stop) {
-        std::unique_ptr<ServerConnection> connection;
         std::unique_ptr<WorkSession> session, ended;
         std::string lost;
         auto const end = [&](std::string const& reason) {
@@ -67,6 +66,7 @@ private:
             lost = lost.empty() ? reason : lost;
             news_.notify_all();
         };
+        std::unique_ptr<ServerConnection> connection; // the last: its handlers know of all these
         {
             // Handlers wait with the lock for the connection and the session that they are of.
             std::unique_lock lock(mutex_);
