@@ -23,8 +23,8 @@ namespace {
 
 using nlohmann::json;
 
-/// What planning takes of one thread for each sample: not measured here, but the middle of 22 to 55 ns, which a study of
-/// an earlier server found with moving pictures of 1920x1080.
+/// What planning takes of one thread for each sample: not measured here, but the middle of 22 to 55 ns, which a study
+/// of an earlier server found with moving pictures of 1920x1080.
 constexpr double serial_seconds = 40e-9;
 
 /// What has been used so far.
