@@ -7,6 +7,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/laps.h"
+#include "common/marked_indices.h"
 #include "server/render/display_framelet.h"
 #include "server/render/display_renderer.h"
 #include "server/render/visibility.h"
@@ -222,12 +223,9 @@ void BatchWork::fill_batch(ViewerKnowledge& viewer) {
     batch_.shapes.clear();
     batch_.tracks.clear();
     batch_.camera_track.reset();
-    batch_.framelets.clear();
-    for (std::size_t i = 0; i < display_.size(); ++i) {
-        if (needed_[i] != 0) {
-            batch_.framelets.push_back(display_[i]);
-        }
-    }
+    list_marked(needed_, sent_);
+    batch_.framelets.resize(sent_.size());
+    tbb::parallel_for(std::size_t{0}, sent_.size(), [&](std::size_t i) { batch_.framelets[i] = display_[sent_[i]]; });
     batch_.view = order.state.view;
     batch_.scene_time = order.state.scene_time;
     batch_.shown_from = order.shown_from;

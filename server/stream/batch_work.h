@@ -80,6 +80,7 @@ private:
     ProbeRenderer probes_;
     std::vector<float> visibility_; ///< inverse depths, where the plan asks for them
     std::vector<std::uint8_t> needed_; ///< by framelet: whether the viewer gets it
+    std::vector<std::size_t> sent_; ///< indices of those
     Batch batch_;
     std::vector<FrameletShape> loose_shapes_; ///< scratch: of samples that the viewer does not move
 };

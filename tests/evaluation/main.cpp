@@ -58,7 +58,7 @@ void add_live_verbs(CLI::App& app, VerbOptions& options, LiveVerbOptions& live, 
     add("soak", "A server in bad weather for long: whether pictures stay exact, and nothing is lost (else exit code 1)",
         add_soak_options, [&] { return answer_soak(live, scene_file("vehicle_chase")); });
     add("scale", "What other processes buy that trace paths of light for a server, and what a cluster comes to",
-        add_scale_options, [&] { return answer_scale(live, scene_file("dusk")); });
+        add_scale_options, [&] { return answer_scale(live, scene_file("dusk"), options.costs_file); });
     add("replay", "A recorded session through the same pipeline: whether the same bytes come out", add_replay_options,
         [&] { return answer_replay(live); });
     add("link", "A link of this rate and delay before a server, for viewers of any kind", add_link_verb_options,

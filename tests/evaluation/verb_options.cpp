@@ -183,6 +183,14 @@ void add_gate_options(CLI::App& verb, VerbOptions& options) {
     verb.add_flag("--write", options.write_gate, "Write the figures anew");
 }
 
+void add_limits_options(CLI::App& verb, VerbOptions& options) {
+    verb.add_option("--threads", options.threads,
+                    "What each stage takes with so many threads instead, and what more come to: two numbers or more")
+        ->delimiter(',')
+        ->expected(2, 64)
+        ->check(CLI::Range(1, 1024));
+}
+
 void add_reference_picture_options(CLI::App& verb, VerbOptions& options) {
     ReferencePictureOptions& picture = options.reference_picture;
     verb.add_option("--output", picture.output, "Picture as viewers show it (.png), or radiance (.exr)")

@@ -54,6 +54,7 @@ struct VerbOptions {
     bool without_live = false;
     std::filesystem::path gate_file = source_folder / "tests/evaluation/gate.json";
     bool write_gate = false;
+    std::vector<int> threads; ///< of `limits`; empty: all, beside the bare loop
 };
 
 /// The project's own scene files, in the order of their names.
@@ -82,6 +83,7 @@ void add_ablation_options(CLI::App& verb, VerbOptions& options);
 void add_table_options(CLI::App& verb, VerbOptions& options);
 void add_gate_options(CLI::App& verb, VerbOptions& options);
 void add_reference_picture_options(CLI::App& verb, VerbOptions& options);
+void add_limits_options(CLI::App& verb, VerbOptions& options);
 void add_report_options(CLI::App& verb, VerbOptions& options);
 
 } // namespace framelet::bench

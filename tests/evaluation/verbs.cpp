@@ -1,6 +1,7 @@
 #include "tests/evaluation/verbs.h"
 
 #include <cstdio>
+#include <set>
 
 #include <nlohmann/json.hpp>
 
@@ -14,6 +15,7 @@
 #include "tests/evaluation/gate.h"
 #include "tests/evaluation/limits.h"
 #include "tests/evaluation/pauses.h"
+#include "tests/evaluation/processors.h"
 #include "tests/evaluation/report/report_page.h"
 #include "tests/evaluation/stability.h"
 #include "tests/evaluation/stillness.h"
@@ -106,6 +108,13 @@ json answer_calibrate(VerbOptions& options) {
 
 json answer_limits(VerbOptions& options) {
     auto const scene = load_bench_scene(options.study.scenes.front());
+    StudyOptions const& study = options.study;
+    if (!options.threads.empty()) {
+        if (std::set(options.threads.begin(), options.threads.end()).size() < 2) {
+            throw InputError("--threads wants two different numbers at least");
+        }
+        return measure_processors(*scene, study.run, study.costs, options.threads, study.charts);
+    }
     return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
 }
 
@@ -269,7 +278,8 @@ std::span<Verb const> verbs() {
          .answer = answer_limits,
          .scenes = chase,
          .usual = screen,
-         .quick = half_screen},
+         .quick = half_screen,
+         .add_options = add_limits_options},
     };
     return all;
 }

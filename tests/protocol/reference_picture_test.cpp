@@ -184,6 +184,36 @@ struct FlatPicture {
     }
 };
 
+/// In a picture of many tiles of the coarsest level, which are written side by side.
+TEST(ReferencePicture, ABatchIsTakenAsItsFrameletsOneByOneFromCoarseToFine) {
+    constexpr Viewport large{1200, 700};
+    ImagePlane const plane(large);
+    std::mt19937 random(7);
+    std::vector<DisplayFramelet> batch;
+    for (int i = 0; i < 600; ++i) {
+        int const depth = plane.min_depth() + static_cast<int>(random() % 5);
+        auto const place = static_cast<std::uint32_t>(random()) % (1u << (2 * depth));
+        Tile const tile{(1u << (2 * depth)) + place};
+        if (plane.accepts(tile)) {
+            auto const seed = static_cast<int>(random() % 256);
+            batch.push_back(framelet_of(tile, [seed](int x, int y) { return seed + 3 * x + 5 * y; }));
+        }
+    }
+    ASSERT_GT(batch.size(), 100u);
+    ReferencePicture at_once, one_by_one;
+    for (ReferencePicture* const picture : {&at_once, &one_by_one}) {
+        picture->show(large);
+        picture->prepare_search({});
+    }
+    at_once.take(batch);
+    std::ranges::stable_sort(batch, {}, [](DisplayFramelet const& framelet) { return framelet.tile.depth(); });
+    for (DisplayFramelet const& framelet : batch) {
+        one_by_one.take(std::span(&framelet, 1));
+    }
+    EXPECT_TRUE(at_once == one_by_one);
+    EXPECT_FALSE(at_once == ReferencePicture{});
+}
+
 TEST(ReferencePicture, PredictsAsIfAllOfItWerePoints) {
     std::mt19937 random(1);
     ImagePlane const plane(viewport);

@@ -320,7 +320,7 @@ TEST(Mirror, OfOneCameraTheNewestIsHeld) {
     EXPECT_TRUE(mirror.gives_way(mirror.cell(3, 3)));
 }
 
-/// Whoever takes part in a look.
+/// Whoever takes part in a look, and however what comes is divided.
 TEST(Mirror, LooksTheSameOnAnyNumberOfThreads) {
     auto const cells_by = [](std::size_t threads) {
         tbb::global_control const limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -337,7 +337,11 @@ TEST(Mirror, LooksTheSameOnAnyNumberOfThreads) {
                     pieces[k].drift.velocity = Vec3(0.3f, 0, 0);
                     pieces[k].moves = true;
                 }
-                mirror.add(view.rays, no_motions, pieces);
+                std::vector<std::vector<Piece>> lists(threads);
+                for (std::size_t k = 0; k < pieces.size(); ++k) {
+                    lists[k * threads / pieces.size()].push_back(pieces[k]);
+                }
+                mirror.add(view.rays, no_motions, lists);
             }
             mirror.look(view_at(Vec3(0.35f, 0.05f, 0.1f), 3.2), no_motions);
         });

@@ -3,6 +3,8 @@
 #include <array>
 #include <cstring>
 
+#include <tbb/parallel_for.h>
+
 #include "common/error.h"
 #include "protocol/codec/color/exact_planes.h"
 #include "protocol/codec/entropy/morton_rows.h"
@@ -233,13 +235,25 @@ void ReferencePicture::write(DisplayFramelet const& framelet) {
 }
 
 void ReferencePicture::take(std::span<DisplayFramelet const> framelets) {
-    for (int depth = plane_.min_depth(); depth <= plane_.max_depth(); ++depth) {
-        for (DisplayFramelet const& framelet : framelets) {
-            if (framelet.tile.depth() == depth) {
-                write(framelet);
-            }
+    order_.clear();
+    for (std::uint32_t i = 0; i < framelets.size(); ++i) {
+        Tile const tile = framelets[i].tile;
+        order_.push_back({tile.code >> (2 * (tile.depth() - plane_.min_depth())), tile.depth(), i});
+    }
+    std::ranges::sort(order_);
+    // What lies in different tiles of the coarsest level knows nothing of each other.
+    first_.clear();
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+        if (i == 0 || order_[i].coarsest != order_[i - 1].coarsest) {
+            first_.push_back(i);
         }
     }
+    first_.push_back(order_.size());
+    tbb::parallel_for(std::size_t{1}, first_.size(), [&](std::size_t end) {
+        for (std::size_t i = first_[end - 1]; i < first_[end]; ++i) {
+            write(framelets[order_[i].index]);
+        }
+    });
 }
 
 } // namespace framelet

@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <bit>
+#include <compare>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/framelet/framelet.h"
 #include "protocol/codec/color/point_grids.h"
@@ -79,9 +81,20 @@ public:
 private:
     void write(DisplayFramelet const& framelet);
 
+    /// A framelet of a batch, in the order in which they are written: of each tile of the coarsest level the coarse
+    /// ones first.
+    struct Written {
+        std::uint32_t coarsest = 0; ///< code of that tile
+        int depth = 0;
+        std::uint32_t index = 0;
+        auto operator<=>(Written const&) const = default;
+    };
+
     ImagePlane plane_;
     PointGrids points_; ///< red, green, blue; half pixels
     SearchPicture search_; ///< green once more, if it is kept for searches
+    std::vector<Written> order_; ///< scratch
+    std::vector<std::size_t> first_; ///< scratch: where tiles of the coarsest level begin in it, and its end
 };
 
 } // namespace framelet

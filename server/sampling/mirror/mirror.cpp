@@ -1,6 +1,7 @@
 #include "server/sampling/mirror/mirror.h"
 
 #include <algorithm>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <utility>
@@ -23,6 +24,16 @@ constexpr std::size_t cells_per_kept_piece = 16;
 
 std::uint64_t key_of(SentTile const& sent) {
     return sent.batch << 32 ^ sent.tile.code;
+}
+
+/// Calls `work(begin, end)` for blocks that are [first, last) together, in parallel.
+template <class Work>
+void for_each_block(std::size_t first, std::size_t last, Work work) {
+    constexpr std::size_t at_once = 2048;
+    tbb::parallel_for(std::size_t{0}, (last - first + at_once - 1) / at_once, [&](std::size_t block) {
+        std::size_t const begin = first + block * at_once;
+        work(begin, std::min(begin + at_once, last));
+    });
 }
 
 } // namespace
@@ -77,14 +88,21 @@ void Mirror::look(MirrorView const& view, BodyMotions const& motions, bool moves
         reproject_from(moment, 0, motions);
     }
     // Each cell shows what all moments have there, one after the other; cells know nothing of each other.
-    int const bands = std::clamp(2 * tbb::this_task_arena::max_concurrency(), 2, 32);
-    int const squares = (rows_ + square_cells - 1) / square_cells; // of which each is of one band
-    tbb::parallel_for(0, bands, [&](int band) {
-        CellRows const rows{squares * band / bands * square_cells,
-                            std::min(squares * (band + 1) / bands * square_cells, rows_)};
+    for_each_band([&](CellRows rows) {
         for (Moment const& moment : moments_) {
             draw(moment, 0, false, rows);
         }
+    });
+}
+
+/// Calls `draw(rows)` for bands of rows that are the picture together, in parallel.
+template <class Draw>
+void Mirror::for_each_band(Draw draw) const {
+    int const bands = std::clamp(2 * tbb::this_task_arena::max_concurrency(), 2, 32);
+    int const squares = (rows_ + square_cells - 1) / square_cells; // of which each is of one band
+    tbb::parallel_for(0, bands, [&](int band) {
+        draw(CellRows{squares * band / bands * square_cells,
+                      std::min(squares * (band + 1) / bands * square_cells, rows_)});
     });
 }
 
@@ -139,11 +157,15 @@ void Mirror::erase_pieces(Moment& moment, Goes goes) {
     moment.cells.resize(kept);
 }
 
-void Mirror::append(Moment& moment, std::span<Piece const> pieces) const {
-    moment.pieces.insert(moment.pieces.end(), pieces.begin(), pieces.end());
-    for (Piece const& piece : pieces) {
-        moment.cells.push_back(static_cast<std::uint32_t>(cell_under(piece.centre)));
-    }
+/// Finds the cells of the last pieces, for which that was not done yet.
+void Mirror::find_cells(Moment& moment) const {
+    std::size_t const first = moment.cells.size();
+    moment.cells.resize(moment.pieces.size());
+    for_each_block(first, moment.pieces.size(), [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            moment.cells[i] = static_cast<std::uint32_t>(cell_under(moment.pieces[i].centre));
+        }
+    });
 }
 
 void Mirror::erase_forgotten() {
@@ -166,39 +188,50 @@ void Mirror::erase_forgotten() {
     forgotten_.clear();
 }
 
-void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces) {
-    if (pieces.empty()) {
+void Mirror::add(ViewRays const& rays, BodyMotions const& motions, std::span<std::vector<Piece> const> lists) {
+    auto const found = std::ranges::find_if(lists, [](std::vector<Piece> const& list) { return !list.empty(); });
+    if (found == lists.end()) {
         return;
     }
     ++changes_;
-    SceneTime const scene_time = pieces.front().scene_time;
+    SceneTime const scene_time = found->front().scene_time;
     if (moments_[base_].number == 0 || !same_camera(moments_[base_].rays, rays)) {
         begin_base(rays, scene_time);
     }
-    standing_.clear();
+    Moment& base = moments_[base_];
+    std::size_t const first = base.pieces.size();
     moving_.clear();
-    for (Piece const& piece : pieces) {
-        bool const stands = !moves_samples_ || !piece.moves || piece.rests || piece.is_brief ||
-                            moments_[base_].scene_time == scene_time;
-        (stands ? standing_ : moving_).push_back(piece);
+    for (std::vector<Piece> const& list : lists) {
+        for (Piece const& piece : list) {
+            (stands(piece) ? base.pieces : moving_).push_back(piece);
+        }
     }
-    add_to(moments_[base_], motions, standing_);
+    show_from(base, first, motions);
     if (!moving_.empty()) {
-        add_to(slot_of_moving(scene_time), motions, moving_);
+        Moment& slot = slot_of_moving(scene_time);
+        std::size_t const first_moving = slot.pieces.size();
+        slot.pieces.insert(slot.pieces.end(), moving_.begin(), moving_.end());
+        show_from(slot, first_moving, motions);
     }
 }
 
-void Mirror::add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces) {
-    find_newest(pieces);
+/// True where the viewer holds a new piece with what stands.
+bool Mirror::stands(Piece const& piece) const {
+    return !moves_samples_ || !piece.moves || piece.rests || piece.is_brief ||
+           moments_[base_].scene_time == piece.scene_time;
+}
+
+/// Shows the pieces of a moment from `first` on, which have just come, in place of those that they replace.
+void Mirror::show_from(Moment& moment, std::size_t first, BodyMotions const& motions) {
+    find_newest(std::span(moment.pieces).subspan(first));
     for (Moment& held : moments_) { // a viewer that moves nothing shows the newest at each position, of whatever moment
         if (&held == &moment || !moves_samples_) {
-            replace(held);
+            replace(held, &held == &moment ? first : held.pieces.size());
         }
     }
-    std::size_t const first = moment.pieces.size();
-    append(moment, pieces);
+    find_cells(moment);
     reproject_from(moment, first, motions);
-    draw(moment, first, true, {0, rows_});
+    for_each_band([&](CellRows rows) { draw(moment, first, true, rows); });
 }
 
 void Mirror::begin_base(ViewRays const& rays, SceneTime scene_time) {
@@ -233,7 +266,7 @@ void Mirror::settle_now() {
         if (!belongs_to_base(moment)) {
             continue;
         }
-        append(base, moment.pieces);
+        base.pieces.insert(base.pieces.end(), moment.pieces.begin(), moment.pieces.end());
         if (moment.number > newest) {
             newest = moment.number;
             base.scene_time = moment.scene_time;
@@ -241,8 +274,9 @@ void Mirror::settle_now() {
         empty(moment);
     }
     base.number = newest;
+    find_cells(base);
     find_newest(base.pieces);
-    replace(base);
+    replace(base, base.pieces.size());
 }
 
 /// A free slot; when all are used, that of the oldest moment, but not the base.
@@ -295,26 +329,33 @@ std::size_t Mirror::cell_under(Vec2 at) const {
 void Mirror::find_newest(std::span<Piece const> pieces) {
     newest_batch_.assign(cells_.size(), 0);
     auto const columns = static_cast<std::size_t>(columns_);
-    for (Piece const& piece : pieces) {
-        std::size_t const low = cell_under(piece.centre - piece.half_side + 0.1f);
-        std::size_t const high = cell_under(piece.centre + piece.half_side - 0.1f);
-        for (std::size_t row = low / columns; row <= high / columns; ++row) {
-            for (std::size_t column = low % columns; column <= high % columns; ++column) {
-                std::uint64_t& newest = newest_batch_[row * columns + column];
-                newest = std::max(newest, piece.of.batch);
+    for_each_block(0, pieces.size(), [&](std::size_t begin, std::size_t end) {
+        for (Piece const& piece : pieces.subspan(begin, end - begin)) {
+            std::size_t const low = cell_under(piece.centre - piece.half_side + 0.1f);
+            std::size_t const high = cell_under(piece.centre + piece.half_side - 0.1f);
+            for (std::size_t row = low / columns; row <= high / columns; ++row) {
+                for (std::size_t column = low % columns; column <= high % columns; ++column) {
+                    std::atomic_ref const newest(newest_batch_[row * columns + column]); // blocks may share a cell
+                    std::uint64_t found = newest.load(std::memory_order_relaxed);
+                    while (found < piece.of.batch &&
+                           !newest.compare_exchange_weak(found, piece.of.batch, std::memory_order_relaxed)) {
+                    }
+                }
             }
         }
-    }
+    });
 }
 
-/// Marks those pieces of a moment as replaced that are older than the newest at their position.
-void Mirror::replace(Moment& moment) {
-    for (std::size_t i = 0; i < moment.pieces.size(); ++i) {
-        std::uint64_t const newest = newest_batch_[moment.cells[i]];
-        if (newest > 0 && moment.pieces[i].of.batch < newest) { // most pieces are not looked at
-            moment.pieces[i].is_replaced = true;
+/// Marks those of the first `count` pieces of a moment as replaced that are older than the newest at their position.
+void Mirror::replace(Moment& moment, std::size_t count) {
+    for_each_block(0, count, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            std::uint64_t const newest = newest_batch_[moment.cells[i]];
+            if (newest > 0 && moment.pieces[i].of.batch < newest) { // most pieces are not looked at
+                moment.pieces[i].is_replaced = true;
+            }
         }
-    }
+    });
 }
 
 /// True where outliers of a moment show: those of the base and of the newest moments, of which one may be still to
@@ -331,18 +372,14 @@ PieceReprojection Mirror::to_picture(Moment const& moment, BodyMotions const& mo
 
 /// Finds where the pieces of a moment lie in the picture that is looked at, from `first` on.
 void Mirror::reproject_from(Moment& moment, std::size_t first, BodyMotions const& motions) {
-    constexpr std::size_t at_once = 2048;
     moment.is_of_camera = same_camera(moment.rays, target_.rays);
     moment.reprojected.resize(moment.pieces.size());
     PieceReprojection const reprojection = to_picture(moment, motions);
     bool const outliers = shows_outliers(moment);
     transforms_.prepare();
-    std::size_t const blocks = (moment.pieces.size() - first + at_once - 1) / at_once;
-    tbb::parallel_for(std::size_t{0}, blocks, [&](std::size_t block) {
-        std::size_t const begin = first + block * at_once;
-        std::size_t const count = std::min(at_once, moment.pieces.size() - begin);
-        reproject(reprojection, std::span(moment.pieces).subspan(begin, count), outliers, transforms_.local(),
-                  std::span(moment.reprojected).subspan(begin, count));
+    for_each_block(first, moment.pieces.size(), [&](std::size_t begin, std::size_t end) {
+        reproject(reprojection, std::span(moment.pieces).subspan(begin, end - begin), outliers, transforms_.local(),
+                  std::span(moment.reprojected).subspan(begin, end - begin));
     });
 }
 

@@ -71,8 +71,12 @@ public:
     /// Finds what the viewer shows of `view` as bodies move by `motions`, in parallel on the calling TBB arena.
     /// `moves_samples`: it moves what it holds, from and to perspective cameras.
     void look(MirrorView const& view, BodyMotions const& motions, bool moves_samples = true);
-    /// Adds pieces of one camera and one scene time that the viewer gets: they are remembered, and shown at once.
-    void add(ViewRays const& rays, BodyMotions const& motions, std::span<Piece const> pieces);
+    /// Adds pieces of one camera and one scene time that the viewer gets, list by list: they are remembered, and shown
+    /// at once. In parallel on the calling TBB arena.
+    void add(ViewRays const& rays, BodyMotions const& motions, std::span<std::vector<Piece> const> lists);
+    void add(ViewRays const& rays, BodyMotions const& motions, std::vector<Piece> const& pieces) {
+        add(rays, motions, std::span(&pieces, 1));
+    }
     /// Notes that the viewer settles (`FrameletPool::settle`), from the next look on.
     void settle() { settles_ = true; }
 
@@ -98,7 +102,7 @@ private:
     void erase_forgotten();
     template <class Goes>
     static void erase_pieces(Moment& moment, Goes goes);
-    void append(Moment& moment, std::span<Piece const> pieces) const;
+    void find_cells(Moment& moment) const;
     std::size_t cell_under(Vec2 at) const;
     void note_changes();
     void note_change(int column, int row) {
@@ -106,8 +110,9 @@ private:
                  static_cast<std::size_t>(column / square_cells)] = changes_;
     }
     void find_newest(std::span<Piece const> pieces);
-    void replace(Moment& moment);
-    void add_to(Moment& moment, BodyMotions const& motions, std::span<Piece const> pieces);
+    void replace(Moment& moment, std::size_t count);
+    void show_from(Moment& moment, std::size_t first, BodyMotions const& motions);
+    bool stands(Piece const& piece) const;
     bool belongs_to_base(Moment const& moment) const { return moment.number > moments_[base_].number; }
     void settle_now();
     static void clear(Moment& moment);
@@ -119,6 +124,8 @@ private:
     Moment& free_slot();
     PieceReprojection to_picture(Moment const& moment, BodyMotions const& motions) const;
     void reproject_from(Moment& moment, std::size_t first, BodyMotions const& motions);
+    template <class Draw>
+    void for_each_band(Draw draw) const;
     void draw(Moment const& moment, std::size_t first, bool is_new, CellRows rows);
     void cover_from(Moment const& moment, std::size_t first, CellRows rows);
     void expect_from(Moment const& moment, std::size_t first, CellRows rows);
@@ -148,7 +155,7 @@ private:
     bool awaits_moment_ = false; ///< nothing has come yet of the moment that is looked at
 
     std::vector<std::uint64_t> newest_batch_; ///< scratch, by cell
-    std::vector<Piece> standing_, moving_; ///< scratch
+    std::vector<Piece> moving_; ///< scratch
     PerThread<BodyTransforms> transforms_; ///< scratch
 };
 

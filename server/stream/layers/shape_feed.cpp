@@ -8,6 +8,7 @@
 #include <tbb/parallel_for.h>
 
 #include "common/error.h"
+#include "common/marked_indices.h"
 
 namespace framelet {
 namespace {
@@ -38,12 +39,7 @@ void ShapeFeed::follow(Vec3 eye, double now) {
 void ShapeFeed::fit(std::span<Framelet const> rendered, std::span<std::uint8_t const> send, ViewRays const& rays,
                     ImagePlane const& plane, double now, std::vector<FrameletShape>& shapes) {
     FRAMELET_CHECK(rendered.size() == send.size());
-    sent_.clear();
-    for (std::size_t i = 0; i < send.size(); ++i) {
-        if (send[i] != 0) {
-            sent_.push_back(i);
-        }
-    }
+    list_marked(send, sent_);
     shapes.resize(sent_.size());
     if (sent_.empty()) {
         return;

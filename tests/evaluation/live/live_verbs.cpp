@@ -224,11 +224,13 @@ json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual) {
     return runs;
 }
 
-json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual) {
+json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual,
+                  std::filesystem::path const& costs_file) {
     if (options.scale.scene.empty()) {
         options.scale.scene = usual;
     }
     options.scale.viewport = parse_size(options.scale_size);
+    options.scale.costs = read_cost_table(costs_file);
     return measure_scale(options.scale);
 }
 

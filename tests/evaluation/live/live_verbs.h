@@ -57,7 +57,8 @@ nlohmann::json answer_replay(LiveVerbOptions& options);
 /// where something has failed.
 nlohmann::json answer_soak(LiveVerbOptions& options, std::filesystem::path const& usual);
 /// Measures what workers buy; `usual`: the scene where none is named.
-nlohmann::json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual);
+nlohmann::json answer_scale(LiveVerbOptions& options, std::filesystem::path const& usual,
+                            std::filesystem::path const& costs_file);
 /// Says at which port an emulated link begins, and lets bytes through until standard input ends.
 nlohmann::json answer_link(LiveVerbOptions& options);
 

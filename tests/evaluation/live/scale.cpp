@@ -15,6 +15,7 @@
 #include "tests/evaluation/charts/charts.h"
 #include "tests/evaluation/live/live.h"
 #include "tests/evaluation/live/live_frames.h"
+#include "tests/evaluation/processors.h"
 #include "tests/loopback/metrics_page.h"
 #include "tests/loopback/process.h"
 
@@ -23,9 +24,14 @@ namespace {
 
 using nlohmann::json;
 
-/// What planning takes of one thread for each sample: not measured here, but the middle of 22 to 55 ns, which a study
-/// of an earlier server found with moving pictures of 1920x1080.
-constexpr double serial_seconds = 40e-9;
+/// The picture and the machine for which it is measured what of a server's work one thread does alone.
+RunParameters large_run() {
+    RunParameters run;
+    run.viewport = {1920, 1080};
+    run.seconds = 0.3;
+    run.frames_per_second = 25;
+    return run;
+}
 
 /// What has been used so far.
 struct Used {
@@ -91,14 +97,15 @@ json row_of(int workers, Used const& used, double alone, double seconds) {
             {"worker_share", used.worker_paths / used.rays}};
 }
 
-/// Costs of a run with workers. `viewers_network`: processor seconds that a run without took for the viewer.
-WorkCosts costs_of(Used const& used, double viewers_network) {
+/// Costs of a run with workers. `viewers_network`: processor seconds that a run without took for the viewer; `serial`:
+/// what one thread of the server does alone for a sample, seconds.
+WorkCosts costs_of(Used const& used, double viewers_network, double serial) {
     WorkCosts costs;
     costs.path = used.workers / used.worker_paths;
     double const own = (used.rays - used.worker_paths) * costs.path;
     costs.network = std::max(used.network - viewers_network, 0.0) / used.worker_paths;
     costs.home = std::max(used.server - used.network - own, 0.0) / used.rays;
-    costs.serial = std::min(serial_seconds, costs.home);
+    costs.serial = std::min(serial, costs.home);
     return costs;
 }
 
@@ -163,9 +170,13 @@ json measure_scale(ScaleOptions const& options) {
     if (best.worker_paths == 0) {
         return out;
     }
-    WorkCosts const costs = costs_of(best, viewers_network);
-    std::printf("a sample costs %.2f us for its path, %.3f at the server, %.4f of its thread of connections\n",
-                1e6 * costs.path, 1e6 * costs.home, 1e6 * costs.network);
+    auto const scene = load_bench_scene(options.scene);
+    double const serial = measure_server(*scene, large_run(), options.costs, {1, 2}).serial();
+    WorkCosts const costs = costs_of(best, viewers_network, serial);
+    std::printf(
+        "a sample costs %.2f us for its path, %.3f at the server, %.4f of its thread of connections, %.4f of the "
+        "one that plans\n",
+        1e6 * costs.path, 1e6 * costs.home, 1e6 * costs.network, 1e6 * costs.serial);
     out["costs_us"] = {{"path", 1e6 * costs.path},
                        {"home", 1e6 * costs.home},
                        {"network", 1e6 * costs.network},

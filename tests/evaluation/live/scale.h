@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "common/camera.h"
+#include "tests/evaluation/cost_table.h"
 
 namespace framelet::bench {
 
@@ -17,7 +18,7 @@ struct WorkCosts {
     double path = 0; ///< where it is traced
     double home = 0; ///< at the server, by any of its processors: surfaces, sums, plan, codec
     double network = 0; ///< at the server, by the one thread that has the connections, of a path from a worker
-    double serial = 0; ///< at the server, by one thread: what of the plan is not parallel
+    double serial = 0; ///< at the server, by one thread: what of planning, learning and coding is not parallel
 };
 
 /// Machines of the same kind: the server's, and those of its workers.
@@ -45,6 +46,7 @@ struct ScaleOptions {
     double seconds = 6; ///< of each run
     std::vector<int> workers{0, 1, 2, 3, 4};
     std::filesystem::path charts; ///< folder; empty: none are drawn
+    CostTable costs; ///< by which sessions run on the virtual clock
 };
 
 /// Prints and returns what runs with so many workers of one thread each have measured, beside a server of one thread,

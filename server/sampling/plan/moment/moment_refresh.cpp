@@ -1,6 +1,11 @@
 #include "server/sampling/plan/moment/moment_refresh.h"
 
+#include <algorithm>
+
+#include <tbb/parallel_for.h>
+
 #include "common/error.h"
+#include "common/marked_indices.h"
 #include "server/sampling/mirror/mirror_checks.h"
 #include "server/sampling/plan/moment/decorrelation.h"
 
@@ -73,26 +78,30 @@ void MomentRefresh::note_sent(RenderedMoment const& moment, std::uint64_t batch,
                               std::span<std::uint8_t const> sent, std::span<FrameletShape> shapes,
                               bool expects_change) {
     FRAMELET_CHECK(framelets.size() == sent.size() && rendered.size() == sent.size());
+    constexpr std::size_t at_once = 64; // framelets
+    list_marked(sent, sent_);
+    FRAMELET_CHECK(shapes.size() == sent_.size());
     ImagePlane const plane(mirror_.viewport());
-    pieces_.clear();
-    auto shape = shapes.begin();
-    for (std::size_t i = 0; i < framelets.size(); ++i) {
-        if (sent[i] != 0) {
-            std::size_t const first = pieces_.size();
-            cut_pieces(rendered[i], framelets[i], *shape, plane, moment.scene_time, batch, pieces_);
-            std::span<Piece> const pieces = std::span(pieces_).subspan(first);
-            bool const rests = is_at_rest(*shape, moment.scene_time, *moment.motions);
+    std::size_t const lists = (sent_.size() + at_once - 1) / at_once;
+    pieces_.resize(std::max(pieces_.size(), lists));
+    tbb::parallel_for(std::size_t{0}, lists, [&](std::size_t list) {
+        pieces_[list].clear();
+        for (std::size_t k = list * at_once; k < std::min((list + 1) * at_once, sent_.size()); ++k) {
+            FrameletShape& shape = shapes[k];
+            std::size_t const first = pieces_[list].size();
+            cut_pieces(rendered[sent_[k]], framelets[sent_[k]], shape, plane, moment.scene_time, batch, pieces_[list]);
+            std::span<Piece> const pieces = std::span(pieces_[list]).subspan(first);
+            bool const rests = is_at_rest(shape, moment.scene_time, *moment.motions);
             std::ranges::for_each(pieces, [&](Piece& piece) {
                 piece.rests = rests;
                 piece.is_outlier = piece.is_outlier && moment.moves_samples; // else all are alike
             });
-            bool const has_outline = shape->layer_count > 1 || !shape->outliers.empty();
-            shape->decorrelation = expects_change ? expect_decorrelation(pieces, mirror_.camera_stands(), has_outline)
-                                                  : DecorrelationCode{0};
-            ++shape;
+            bool const has_outline = shape.layer_count > 1 || !shape.outliers.empty();
+            shape.decorrelation = expects_change ? expect_decorrelation(pieces, mirror_.camera_stands(), has_outline)
+                                                 : DecorrelationCode{0};
         }
-    }
-    mirror_.add(moment.rays, *moment.motions, pieces_);
+    });
+    mirror_.add(moment.rays, *moment.motions, std::span(pieces_).first(lists));
 }
 
 } // namespace framelet

@@ -76,7 +76,8 @@ private:
     double looked_ = never; ///< when the moment began at which the mirror looks, seconds
     std::uint32_t looks_taken_ = 0;
     bool is_checked_ = false; ///< more is known of the moment than when it was planned
-    std::vector<Piece> pieces_; ///< scratch
+    std::vector<std::size_t> sent_; ///< scratch: indices of what was sent
+    std::vector<std::vector<Piece>> pieces_; ///< scratch: of some framelets each, in order
 };
 
 } // namespace framelet
