@@ -30,10 +30,11 @@ struct ServerCosts {
 StageCost stage_cost(std::vector<int> const& threads, std::vector<double> const& seconds);
 
 /// Seconds a sample with so many threads. Of many, some learn and encode a batch while the next one renders, as in
-/// `SessionLoop`; planning is by itself.
+/// `SessionLoop`; planning is by itself, and of rendering only the parallel part counts.
 double seconds_with(ServerCosts const& costs, int threads);
 
-/// Clocks sessions with these numbers of threads, two different ones at least, and prints what each stage takes.
+/// Clocks sessions with these numbers of threads, two different ones at least and none above that of the processors,
+/// and prints what each stage takes. Rendering is taken to be all parallel.
 /// `run.times` is not used; `rows`, unless null, gets the figures.
 ServerCosts measure_server(BenchScene& scene, RunParameters const& run, CostTable const& costs,
                            std::vector<int> const& threads, nlohmann::json* rows = nullptr);

@@ -115,7 +115,7 @@ json answer_limits(VerbOptions& options) {
         }
         return measure_processors(*scene, study.run, study.costs, options.threads, study.charts);
     }
-    return measure_limits(*scene, options.study.run.viewport, options.quick ? 3 : 9);
+    return measure_limits(*scene, study.run.viewport, options.quick ? 3 : 9);
 }
 
 /// Chooses what the report runs, where it is not told.
